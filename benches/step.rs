@@ -19,10 +19,11 @@ use lieflow::maps::{CCSK123, CCSK321, Cay, Exp};
 use lieflow::methods::commutator_free::CommutatorFree;
 use lieflow::methods::crouch_grossman::CG3;
 use lieflow::methods::tableau::{DOP853, DOPRI5, RK4};
-use lieflow::methods::{AnyMethod, Embedded, Method, Rk, Rkmk, Taylor};
+use lieflow::methods::{AnyMethod, Embedded, LieSeries, Method, Rk, Rkmk, Taylor};
 use lieflow::nalgebra::{Matrix3, Vector3};
 use lieflow::problems::{
-    Flow, HeavyTop, PointOf, RigidBody, RigidBodyAttitude, RigidBodyN, RigidBodyNAttitude,
+    Euler, Flow, HeavyTop, Kinetic, PointOf, RigidBody, RigidBodyAttitude, RigidBodyN,
+    RigidBodyNAttitude,
 };
 use lieflow::{LieAlgebra, Problem, Solve, Step};
 
@@ -200,6 +201,8 @@ fn compare_spaces() {
         (body, m)
     };
     let ((body5, m5), (body10, m10)) = (body(5), body(10));
+    let kinetic = Kinetic(move |m: &V, u: &mut V| *u = m.component_div(&inertia));
+    let series = LieSeries::new(16).expect("an order");
     let (dopri5, dop853) = (Rkmk::new(DOPRI5, Exp), Rkmk::new(DOP853, Exp));
     let rows = [
         ("rkmk dopri5, se(3)*", both(top, dopri5, at_start)),
@@ -208,6 +211,8 @@ fn compare_spaces() {
         ("rkmk dopri5, so(5)*", both(body5.clone(), dopri5, m5.clone())),
         ("rkmk dop853, so(5)*", both(body5, dop853, m5)),
         ("rkmk dopri5, so(10)*", both(body10, dopri5, m10)),
+        ("taylor16, so(3)*", both(self::body(), Taylor::<16>, MOMENTUM)),
+        ("LieSeries 16, so(3)*", both(Euler::new(So3::new(), kinetic), series, MOMENTUM)),
     ];
     let (names, loops): (Vec<_>, Vec<_>) = rows.into_iter().unzip();
     println!("\n{:20} typed: given size, by error [ns an attempt]", "");

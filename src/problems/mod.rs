@@ -99,8 +99,7 @@ pub use schrodinger::{
     Schrodinger, VonNeumann, amplitudes, density_matrix, populations, populations_of, schrodinger,
     von_neumann,
 };
-pub(crate) use series::Se3Series;
-pub use series::TaylorField;
+pub use series::{MomentumTerms, TaylorField};
 pub use spheres::{SphericalPendulum, SpinChain};
 pub use torque::{BodyMotion, BodyTorque, SpaceTorque, Torque, TorqueBody};
 #[cfg(feature = "dense")]

@@ -2,8 +2,9 @@
 
 use faer::Mat;
 
+use super::MomentumTerms;
 use crate::dense::{antisymmetrise, mul_add};
-use crate::groups::AlgebraMatrix;
+use crate::groups::{AlgebraMatrix, MatrixGroup};
 use crate::scalar::{Ops, tally};
 
 /// The coefficients of a momentum in 𝔤*.
@@ -53,5 +54,26 @@ impl MomentumSeries {
             antisymmetrise(next);
         }
         next
+    }
+}
+
+impl MomentumTerms for MatrixGroup {
+    type Momenta = MomentumSeries;
+
+    fn momenta(&self, order: usize) -> MomentumSeries {
+        MomentumSeries::new(self.n(), self.is_skew(), order)
+    }
+    fn next<'s>(
+        &self,
+        h: f64,
+        m: &Mat<f64>,
+        k: usize,
+        f: &[AlgebraMatrix],
+        momenta: &'s mut MomentumSeries,
+    ) -> &'s Mat<f64> {
+        if k == 0 {
+            momenta.start().copy_from(m);
+        }
+        momenta.next(h, k, f)
     }
 }

@@ -2,7 +2,7 @@
 //! methods need them.
 
 use super::{AlgOf, PointOf, Problem, ScalarOf};
-use crate::groups::{Adjoint, LieAlgebra, Se3};
+use crate::groups::{Adjoint, LieAlgebra, Se3, So3};
 use crate::scalar::Real;
 
 /// A field with Taylor coefficients along the solution through a point.
@@ -30,37 +30,55 @@ pub trait TaylorField: Problem {
     );
 }
 
-/// The coefficients of a momentum in se(3)*.
-#[derive(Clone, Debug)]
-pub struct Se3Series<S>(Vec<<Se3<S> as Adjoint>::Dual>)
-where
-    S: Real;
+/// A group whose momenta have Taylor coefficients along ṁ = −ad*_f m.
+pub trait MomentumTerms: Adjoint {
+    /// The coefficients of a momentum.
+    type Momenta: Send;
 
-impl<S: Real> Se3Series<S> {
-    /// Storage for coefficients up to θ^order.
-    pub(crate) fn new(order: usize) -> Self {
-        Se3Series(vec![Se3::new().zero(); order + 1])
-    }
+    /// Storage for coefficients up to θ^order. Only this call allocates.
+    fn momenta(&self, order: usize) -> Self::Momenta;
 
-    /// m_k of ṁ = −ad*_f m from m, by k m_k = −h Σ_{i+j=k−1} ad*_{f_j} m_i.
-    pub(crate) fn next(
-        &mut self,
-        h: S,
-        m: &<Se3<S> as Adjoint>::Dual,
+    /// m_k from m and f\[..k\], by k m_k = −h Σ_{i+j=k−1} ad*_{f_j} m_i. Called for k = 0, 1, … in turn.
+    fn next<'s>(
+        &self,
+        h: Self::Scalar,
+        m: &Self::Dual,
         k: usize,
-        f: &[<Se3<S> as LieAlgebra>::Alg],
-    ) -> &<Se3<S> as Adjoint>::Dual {
-        let group = Se3::new();
-        let [mut sum, mut term, mut next] = [group.zero(); 3];
-        for (m, f) in self.0[..k].iter().zip(f[..k].iter().rev()) {
-            group.coad(f, m, &mut term);
-            group.axpy(S::lit(1.0), &term, &mut sum);
-        }
-        match k {
-            0 => next = *m,
-            _ => group.axpy(-h / S::lit(k as f64), &sum, &mut next),
-        }
-        self.0[k] = next;
-        &self.0[k]
-    }
+        f: &[Self::Alg],
+        momenta: &'s mut Self::Momenta,
+    ) -> &'s Self::Dual;
 }
+
+/// On vectors 𝔤* is 𝔤 with other products.
+macro_rules! on_vectors {
+    ($($group:ident),*) => {$(
+        impl<S: Real> MomentumTerms for $group<S> {
+            type Momenta = Vec<Self::Dual>;
+
+            fn momenta(&self, order: usize) -> Vec<Self::Dual> {
+                vec![self.zero(); order + 1]
+            }
+            fn next<'s>(
+                &self,
+                h: S,
+                m: &Self::Dual,
+                k: usize,
+                f: &[Self::Alg],
+                momenta: &'s mut Vec<Self::Dual>,
+            ) -> &'s Self::Dual {
+                let [mut sum, mut term, mut next] = [self.zero(); 3];
+                for (m, f) in momenta[..k].iter().zip(f[..k].iter().rev()) {
+                    self.coad(f, m, &mut term);
+                    self.axpy(S::lit(1.0), &term, &mut sum);
+                }
+                match k {
+                    0 => next = *m,
+                    _ => self.axpy(-h / S::lit(k as f64), &sum, &mut next),
+                }
+                momenta[k] = next;
+                &momenta[k]
+            }
+        }
+    )*};
+}
+on_vectors!(So3, Se3);

@@ -14,7 +14,7 @@
 use nalgebra::Vector3;
 
 use super::rigid_body::check_finite;
-use super::{Invariant, Invariants, LiePoisson, Problem, Se3Series, TaylorField};
+use super::{Invariant, Invariants, LiePoisson, MomentumTerms, Problem, TaylorField};
 use crate::actions::{Coadjoint, Linear};
 use crate::error::Error;
 use crate::groups::{Power, Se3, So3};
@@ -104,10 +104,10 @@ impl<S: Real> Problem for SphericalPendulum<S> {
 
 /// f is affine in (ω, q).
 impl<S: Real> TaylorField for SphericalPendulum<S> {
-    type Series = Se3Series<S>;
+    type Series = Vec<(V<S>, V<S>)>;
 
-    fn series(&self, order: usize) -> Se3Series<S> {
-        Se3Series::new(order)
+    fn series(&self, order: usize) -> Self::Series {
+        self.group().momenta(order)
     }
     fn coefficient(
         &self,
@@ -115,9 +115,9 @@ impl<S: Real> TaylorField for SphericalPendulum<S> {
         y: &(V<S>, V<S>),
         k: usize,
         f: &mut [(V<S>, V<S>)],
-        series: &mut Se3Series<S>,
+        series: &mut Self::Series,
     ) {
-        let y = series.next(h, y, k, f);
+        let y = self.group().next(h, y, k, f, series);
         self.f(t, y, &mut f[k], &mut ());
         if k > 0 {
             f[k].1 = V::from_element(S::lit(0.0));

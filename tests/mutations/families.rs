@@ -10,6 +10,8 @@
 //! | Magnus | A₁, A₂: the same as | \[A₁, A₂\] | A(t) alone | −\[A₁, A₂\] | gᵀy |
 //! | implicit RKMK | a_ij | dΨ⁻¹ = id | c = 0 | dΨ⁻¹ at −u | gᵀy |
 //! | Lie series | f₁, f₂ | f₂ dropped | f₀ alone | Ψ_j f_i | gᵀy |
+//!
+//! Lie series have two more: the last coefficient wrong, and steps that the last term alone limits.
 
 use crate::actions::Translation;
 use crate::maps::Faulty;
@@ -22,16 +24,19 @@ use faer::{Mat, Scale};
 use lieflow::actions::LeftTranslation;
 use lieflow::chart::ChartStore;
 use lieflow::groups::{AlgebraMatrix, GroupMatrix, MatrixGroup};
-use lieflow::maps::{Cay, Exp};
+use lieflow::maps::{Cay, Exp, exp};
 use lieflow::methods::commutator_free::{CF4, ProductTableau};
 use lieflow::methods::crouch_grossman::CG3;
 use lieflow::methods::tableau::RK4;
 use lieflow::methods::{
-    CommutatorFree, Facts, GAUSS4, ImplicitTableau, LieSeries, Method, Rkmk, RkmkGauss,
+    CommutatorFree, Embedded, Facts, GAUSS4, ImplicitTableau, LieSeries, Method, Rkmk, RkmkGauss,
     RkmkGaussSymmetric, Step, Tableau, magnus,
 };
 use lieflow::problems::{AlgOf, LinearField, PointOf, Problem, TaylorField};
-use lieflow::{Action, Error, LieAlgebra, StepError};
+use lieflow::tolerance::Tolerance;
+use lieflow::{
+    Action, Error, LieAlgebra, LieGroup, SaveAt, StepControl, StepError, integrate_adaptive,
+};
 
 fn so5() -> MatrixGroup {
     MatrixGroup::so(5).unwrap()
@@ -242,6 +247,8 @@ enum Coefficients {
     Exchanged,
     Dropped,
     Frozen,
+    /// Three times the last one.
+    WrongLast,
 }
 
 /// ẏ = λ_*(Σ c_n tⁿ)(y) with the coefficients of its field about any t; where it is MOVING they are taken
@@ -315,7 +322,9 @@ impl<A: Points<MatrixGroup>, const MOVING: bool> TaylorField for Polynomial<A, M
         };
         let binomial = |n: usize| (0..power).fold(1.0, |b, i| b * (n - i) as f64 / (i + 1) as f64);
         for n in power..self.c.len() {
+            let wrong = self.coefficients == Coefficients::WrongLast && k + 1 == self.c.len();
             let weight = binomial(n) * t.powi((n - power) as i32) * h.powi(k as i32);
+            let weight = if wrong { 3.0 * weight } else { weight };
             self.group.axpy(weight, &self.c[n], &mut f[k]);
         }
     }
@@ -323,12 +332,12 @@ impl<A: Points<MatrixGroup>, const MOVING: bool> TaylorField for Polynomial<A, M
 
 #[test]
 fn lie_series() {
-    use Coefficients::{Dropped, Exchanged, Frozen, Sound};
+    use Coefficients::{Dropped, Exchanged, Frozen, Sound, WrongLast};
     let taylor = LieSeries::new(4).unwrap();
     let on = |coefficients| Polynomial::<_, false>::new(LeftTranslation, coefficients);
     let problem = on(Sound);
     sound("taylor4", &problem, &taylor, &problem.exact());
-    for (slip, left) in [(Exchanged, 1), (Dropped, 2), (Frozen, 1)] {
+    for (slip, left) in [(Exchanged, 1), (Dropped, 2), (Frozen, 1), (WrongLast, 3)] {
         let problem = on(slip);
         refused(&format!("{slip:?}"), Some(left), &problem, &taylor, &problem.exact());
     }
@@ -338,4 +347,78 @@ fn lie_series() {
         let problem = Polynomial::<_, false>::new(Translation(fault), Sound);
         refused("transposed", None, &problem, &taylor, &problem.exact());
     }
+}
+
+/// A Lie series whose error is its last term alone, for the relative tolerance [`RTOL`].
+struct LimitedByLast(LieSeries);
+
+const RTOL: f64 = 1e-8;
+
+impl<P: TaylorField<Group = MatrixGroup>> Method<P> for LimitedByLast {
+    type Work = <LieSeries as Method<P>>::Work;
+
+    fn facts(&self, problem: &P) -> Facts {
+        self.0.facts(problem)
+    }
+    fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
+        self.0.work(problem, like)
+    }
+    fn step(
+        &self,
+        problem: &P,
+        step: Step<f64>,
+        y: &mut PointOf<P>,
+        work: &mut Self::Work,
+    ) -> Result<(), StepError> {
+        self.0.step(problem, step, y, work)
+    }
+}
+
+impl<P: TaylorField<Group = MatrixGroup>> Embedded<P> for LimitedByLast {
+    fn step_with_error(
+        &self,
+        problem: &P,
+        step: Step<f64>,
+        tolerance: &Tolerance,
+        from: &PointOf<P>,
+        work: &mut Self::Work,
+        to: &mut PointOf<P>,
+    ) -> Result<f64, StepError> {
+        self.0.step_with_error(problem, step, tolerance, from, work, to)?;
+        let mut numbers = Vec::new();
+        Method::<P>::each_term(&self.0, work, &mut |x| numbers.push(*x));
+        let last = &numbers[numbers.len() - problem.group().n().pow(2)..];
+        Ok(last.iter().map(|x| x * x).sum::<f64>().sqrt() / RTOL)
+    }
+}
+
+/// The solution of ẏ = t M y is even about 0, so the last term of an odd order vanishes in the first step.
+#[test]
+fn lie_series_are_limited_by_both_of_their_last_terms() {
+    let group = so5();
+    let m = group.nearest(&matrices()[0]);
+    let zero = || group.zero();
+    let c = [zero(), m.clone(), zero(), zero()];
+    let problem = Polynomial::<_, false> {
+        group: group.clone(),
+        action: LeftTranslation,
+        c,
+        coefficients: Coefficients::Sound,
+    };
+    let exact = exp(&group, &group.nearest(&(&*m * Scale(0.5)))).unwrap();
+    let control = StepControl::new(0.0, RTOL).and_then(|c| c.first_step(1.0)).unwrap();
+    let run = |method: &dyn Fn(&mut GroupMatrix)| {
+        let mut y = group.identity();
+        method(&mut y);
+        group.distance(&y, &exact)
+    };
+    let (series, span) = (LieSeries::new(7).unwrap(), [0.0, 1.0]);
+    let sound = run(&|y| {
+        integrate_adaptive(&problem, &series, span, &control, &SaveAt::Ends, y, |_, _| {}).unwrap();
+    });
+    let faulty = LimitedByLast(series);
+    let broken = run(&|y| {
+        integrate_adaptive(&problem, &faulty, span, &control, &SaveAt::Ends, y, |_, _| {}).unwrap();
+    });
+    assert!(sound < 100.0 * RTOL && broken > 1e4 * RTOL, "{sound:e}, {broken:e}");
 }

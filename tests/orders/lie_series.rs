@@ -10,7 +10,7 @@ use lieflow::methods::{
     AnyMethod, GAUSS6, LieSeries, Metric, RkmkGaussSymmetric, SeriesGroup, Taylor,
 };
 use lieflow::problems::{
-    PointOf, Problem, RigidBodyN, RigidBodyNAttitude, RigidBodyState, TaylorField,
+    Euler, Kinetic, PointOf, Problem, RigidBodyN, RigidBodyNAttitude, RigidBodyState, TaylorField,
 };
 use lieflow::{Error, LieAlgebra, Method, SaveAt, Step, StepError, TimeGrid, integrate};
 use lieflow::{StepControl, integrate_adaptive};
@@ -128,6 +128,31 @@ fn on_so3_it_is_the_method_of_the_free_body() {
     let gap = (0..9).map(|k| (g[(k / 3, k % 3)] - closed[(k / 3, k % 3)]).abs());
     let gap = gap.fold(0.0, f64::max);
     assert!(gap < 1e-13, "{gap:e}");
+}
+
+/// Euler's equations on so(3)* are those of a free body: its momentum and attitude, and the step by error.
+#[test]
+fn eulers_equations_on_so3() {
+    let (inertia, m) = (Vector3::new(1.0, 2.0, 3.0), Vector3::new(0.9, 1.0, 2.1));
+    let exact = lieflow::problems::Exact::new(inertia.into(), m.into(), Matrix3::identity())
+        .and_then(|exact| exact.state(4.0))
+        .expect("the exact motion");
+    let kinetic = Kinetic(move |m: &Vector3<f64>, u: &mut Vector3<f64>| {
+        *u = m.component_div(&inertia);
+    });
+    let body = Euler::new(So3::new(), kinetic).with_group();
+    let start = (Matrix3::identity(), m);
+    let distance =
+        |y: &(Matrix3<f64>, Vector3<f64>)| (y.0 - exact.1).norm() + (y.1 - exact.0).norm();
+    for (p, grid) in ORDERS.into_iter().filter(|(p, _)| [4, 6].contains(p)) {
+        let errors = grid.map(|n| distance(&run(&body, &series(p), &start, 4.0, n)));
+        assert_order(&format!("so(3)* taylor{p}"), p as f64, &grid, &errors);
+    }
+    let mut y = start;
+    let control = StepControl::new(0.0, 1e-10).expect("a tolerance");
+    integrate_adaptive(&body, &series(12), [0.0, 4.0], &control, &SaveAt::Ends, &mut y, |_, _| {})
+        .expect("a run");
+    assert!(distance(&y) < 1e-9, "{:e}", distance(&y));
 }
 
 /// ġ = f(t) g on SO(3), f a polynomial: its coefficients about any t.

@@ -6,14 +6,12 @@
 //! With g in the state: (ġ, ṁ) = (g ∇H(m), ad*_{∇H(m)} m) on G × 𝔤*, Λ(a, (g, m)) = (g a⁻¹, Ad*_{a⁻¹} m), and the same
 //! f. Every method that acts by the group conserves Ad*_{g⁻¹} m, the momentum in space.
 
-#[cfg(feature = "dense")]
-mod general;
-
 use crate::actions::{Action, Coadjoint, RightTranslation, RightWork};
 use crate::error::Error;
-use crate::groups::{Adjoint, LieAlgebra, Se3, worse};
+use crate::groups::{Adjoint, worse};
 use crate::problems::{
-    AlgOf, Invariant, Invariants, LiePoisson, LinearSpace, PointOf, Problem, Se3Series, TaylorField,
+    AlgOf, Invariant, Invariants, LiePoisson, LinearSpace, MomentumTerms, PointOf, Problem,
+    TaylorField,
 };
 use crate::scalar::Real;
 
@@ -53,7 +51,7 @@ pub trait DiscreteGradient<G: Adjoint>: Hamiltonian<G> {
     }
 }
 
-/// A Hamiltonian of degree at most 2, so that ∇H is affine. On se(3)* Lie series need no more.
+/// A Hamiltonian of degree at most 2, so that ∇H is affine. Lie series need no more.
 ///
 /// For a homogeneous H of degree 2 the default is right: `impl Quadratic<G> for MyHamiltonian {}`.
 pub trait Quadratic<G: Adjoint>: Hamiltonian<G> {
@@ -220,29 +218,38 @@ where
     }
 }
 
-/// The Taylor coefficients of −∇H(m) on se(3).
-impl<S: Real, H: Quadratic<Se3<S>>> TaylorField for Euler<Se3<S>, H> {
-    type Series = Se3Series<S>;
+/// The Taylor coefficients of m and of −∇H(m).
+#[allow(missing_debug_implementations)] // the parts belong to the group's types
+pub struct EulerSeries<G: MomentumTerms> {
+    momenta: G::Momenta,
+    xi: G::Alg,
+}
 
-    fn series(&self, order: usize) -> Se3Series<S> {
-        Se3Series::new(order)
+/// The Taylor coefficients of −∇H(m).
+impl<G: MomentumTerms, H: Quadratic<G>> TaylorField for Euler<G, H>
+where
+    Coadjoint: Action<G, Point = G::Dual>,
+{
+    type Series = EulerSeries<G>;
+
+    fn series(&self, order: usize) -> EulerSeries<G> {
+        EulerSeries { momenta: self.group.momenta(order), xi: self.group.zero() }
     }
     fn coefficient(
         &self,
-        [_, h]: [S; 2],
+        [_, h]: [G::Scalar; 2],
         m: &PointOf<Self>,
         k: usize,
         f: &mut [AlgOf<Self>],
-        series: &mut Se3Series<S>,
+        EulerSeries { momenta, xi }: &mut EulerSeries<G>,
     ) {
-        let m = series.next(h, m, k, f);
-        let mut xi = self.group.zero();
+        let m = self.group.next(h, m, k, f, momenta);
         match k {
-            0 => self.hamiltonian.gradient(m, &mut xi),
-            _ => self.hamiltonian.linear_gradient(m, &mut xi),
+            0 => self.hamiltonian.gradient(m, xi),
+            _ => self.hamiltonian.linear_gradient(m, xi),
         }
         self.group.set_zero(&mut f[k]);
-        self.group.axpy(S::lit(-1.0), &xi, &mut f[k]);
+        self.group.axpy(G::Scalar::lit(-1.0), xi, &mut f[k]);
     }
 }
 
@@ -365,19 +372,22 @@ where
 }
 
 /// f is that of the system without g.
-impl<S: Real, H: Quadratic<Se3<S>>> TaylorField for EulerGroup<Se3<S>, H> {
-    type Series = Se3Series<S>;
+impl<G: MomentumTerms, H: Quadratic<G>> TaylorField for EulerGroup<G, H>
+where
+    Coadjoint: Action<G, Point = G::Dual>,
+{
+    type Series = EulerSeries<G>;
 
-    fn series(&self, order: usize) -> Se3Series<S> {
+    fn series(&self, order: usize) -> EulerSeries<G> {
         self.system.series(order)
     }
     fn coefficient(
         &self,
-        time: [S; 2],
+        time: [G::Scalar; 2],
         (_, m): &PointOf<Self>,
         k: usize,
         f: &mut [AlgOf<Self>],
-        series: &mut Se3Series<S>,
+        series: &mut EulerSeries<G>,
     ) {
         self.system.coefficient(time, m, k, f, series);
     }
