@@ -12,7 +12,7 @@ use lieflow_model::problem::{
 };
 use lieflow_model::reader::{ReadError, Shape, Tree};
 use lieflow_model::scene::{Columns, OnRows, RowFormula};
-use lieflow_model::schema::{Numbers, Observable, Part, Row, Schema, Units};
+use lieflow_model::schema::{Dimension, Numbers, Observable, Part, Row, Schema};
 use numpy::{PyArray1, PyArrayDyn, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -66,6 +66,11 @@ fn shape_type(shape: Shape) -> String {
     }
 }
 
+/// A dimension in words; empty where it is not known.
+fn words(dimension: Option<Dimension>) -> String {
+    dimension.map(|dimension| dimension.to_string()).unwrap_or_default()
+}
+
 /// What every kind states: its name, equation, summary, keys and quantities.
 #[pyfunction]
 pub(crate) fn kinds(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
@@ -75,13 +80,13 @@ pub(crate) fn kinds(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
         all.set_item("equation", kind.equation)?;
         all.set_item("summary", kind.summary)?;
         let keys = kind.keys.iter().map(|key| {
-            let KeyInfo { name, meaning, shape, optional } = *key;
-            (name, meaning, shape_words(shape), optional, shape_type(shape))
+            let KeyInfo { name, meaning, shape, optional, dimension } = *key;
+            (name, meaning, shape_words(shape), optional, shape_type(shape), words(dimension))
         });
         all.set_item("keys", keys.collect::<Vec<_>>())?;
         let quantities = (kind.quantities)().into_iter();
         let quantities =
-            quantities.map(|q| (q.name, q.column_names(), q.meaning, q.unit(&Units::default())));
+            quantities.map(|q| (q.name, q.column_names(), q.meaning, words(q.dimension)));
         all.set_item("quantities", quantities.collect::<Vec<_>>())?;
         let laws = (kind.quantities)().into_iter().filter(|q| q.kept != Kept::Never);
         let laws = laws.map(|q| (q.name, q.kept == Kept::Always));

@@ -26,7 +26,7 @@ COLUMNS: int
 class Problem:
     kind: ClassVar[str]
     equation: ClassVar[str]
-    key_table: ClassVar[tuple[tuple[str, str, str, bool, str], ...]]
+    key_table: ClassVar[tuple[tuple[str, str, str, bool, str, str], ...]]
     quantity_table: ClassVar[tuple[tuple[str, tuple[str, ...], str, str], ...]]
     _keys: dict[str, Any]
     _problem: _lieflow.Problem
@@ -75,7 +75,7 @@ def stub() -> str:
     for made in sorted(_problems.KINDS.values(), key=lambda made: made.__name__):
         keys = "".join(
             f"        {name}: {of}{' | None = None' if optional else ''},\n"
-            for name, _, of, optional, _ in made.key_table
+            for name, _, of, optional, *_ in made.key_table
         )
         text.append(f"class {made.__name__}(Problem):\n    def __init__(\n        self,\n        *,\n{keys}    ) -> None: ...\n")
     names = sorted(["KINDS", "Problem", "problem_of", *(made.__name__ for made in _problems.KINDS.values())])

@@ -54,6 +54,14 @@ def test_a_problem_states_its_laws(made):
     assert all(parameters[name].kind is inspect.Parameter.KEYWORD_ONLY for name in parameters)
 
 
+def test_keys_and_quantities_have_their_dimensions():
+    text = pydoc.render_doc(lf.HeavyTop)
+    assert "omega_body : shape (3,), optional [angle/time]" in text
+    assert "energy : energy [mass·length²/time²]" in text
+    dimensions = {name: dimension for name, *_, dimension in lf.Kirchhoff.key_table}
+    assert dimensions["mass"] == "mass" and dimensions["parameters"] == ""
+
+
 def test_stubtest_without_options():
     pytest.importorskip("mypy")
     done = subprocess.run([sys.executable, "-m", "mypy.stubtest", "lieflow"], capture_output=True, text=True)

@@ -34,14 +34,23 @@ struct KindEntry {
     name: &'static str,
     summary: &'static str,
     equation: &'static str,
-    keys: Vec<Meaning>,
-    quantities: Vec<Meaning>,
+    keys: Vec<KeyEntry>,
+    quantities: Vec<QuantityEntry>,
 }
 
 #[derive(Serialize)]
-struct Meaning {
+struct KeyEntry {
     name: &'static str,
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    meaning: &'static str,
+    shape: String,
+    optional: bool,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    dimension: Option<String>,
+}
+
+#[derive(Serialize)]
+struct QuantityEntry {
+    name: &'static str,
     columns: Vec<String>,
     meaning: &'static str,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -70,10 +79,16 @@ fn kind_entry(kind: &Kind) -> KindEntry {
         summary: kind.summary,
         equation: kind.equation,
         keys: keys
-            .map(|k| Meaning { name: k.name, columns: vec![], meaning: k.meaning, dimension: None })
+            .map(|k| KeyEntry {
+                name: k.name,
+                meaning: k.meaning,
+                shape: k.shape.to_string(),
+                optional: k.optional,
+                dimension: k.dimension.map(|dimension| dimension.to_string()),
+            })
             .collect(),
         quantities: quantities
-            .map(|q| Meaning {
+            .map(|q| QuantityEntry {
                 name: q.name,
                 columns: q.column_names(),
                 meaning: q.meaning,
@@ -110,15 +125,16 @@ fn scenes_of(kind: &KindEntry, scenes: &[SceneEntry]) -> String {
 fn meanings(kind: &KindEntry) -> String {
     let mut text = format!("\n[problem] kind = {:?}: {}\n", kind.name, kind.summary);
     text += &wrap(kind.equation, "  ");
-    let keys = kind.keys.iter().map(|key| [key.name.into(), key.meaning.into()]);
+    let with = |meaning: &str, dimension: &Option<String>| match dimension {
+        Some(dimension) => format!("{meaning} [{dimension}]"),
+        None => meaning.to_string(),
+    };
+    let keys = kind.keys.iter().map(|key| [key.name.into(), with(key.meaning, &key.dimension)]);
     text += &format!("\n{}", entries(["key", "meaning"], keys));
     // Quantities that follow each other and mean the same, as the angles of all sequences of axes, are one line.
-    let quantity = |alike: &[Meaning]| {
+    let quantity = |alike: &[QuantityEntry]| {
         let (first, others) = (&alike[0], &alike[1..]);
-        let mut meaning = first.meaning.to_string();
-        if let Some(dimension) = &first.dimension {
-            meaning += &format!(" [{dimension}]");
-        }
+        let mut meaning = with(first.meaning, &first.dimension);
         if !others.is_empty() {
             let others: Vec<&str> = others.iter().map(|other| other.name).collect();
             meaning += &format!("; so are {}", others.join(", "));

@@ -236,6 +236,27 @@ fn methods_for_a_scene_are_those_that_run() {
 }
 
 #[test]
+fn a_key_has_its_shape_and_its_dimension() {
+    let folder = Folder::new();
+    let text = folder.lieflow(&["scenes", "heavy-top", "--json"]).ok();
+    let kind: Value = serde_json::from_str(&text).unwrap();
+    let keys = kind["keys"].as_array().unwrap();
+    let key = |name: &str| keys.iter().find(|key| key["name"] == name).unwrap();
+    for (name, shape, optional, dimension) in [
+        ("inertia", "a list of 3 numbers, or 3 rows of 3 numbers", true, Some("mass·length²")),
+        ("omega_body", "a list of 3 numbers", true, Some("angle/time")),
+        ("weight", "a list of 3 numbers", false, Some("mass·length²/time²")),
+        ("vertical", "a list of 3 numbers", true, None),
+    ] {
+        assert_eq!(key(name)["shape"], shape);
+        assert_eq!(key(name)["optional"], optional);
+        assert_eq!(key(name).get("dimension").and_then(Value::as_str), dimension, "{name}");
+    }
+    let shown = folder.lieflow(&["scenes", "kirchhoff"]).ok();
+    assert!(shown.contains("initial linear momentum in the body [mass·length/time]"), "{shown}");
+}
+
+#[test]
 fn the_keys_and_quantities_that_are_listed_are_those_that_scenes_take() {
     for kind in KINDS.iter() {
         let text = BUNDLED.iter().find(|s| s.text.contains(&format!("{:?}", kind.name))).unwrap();

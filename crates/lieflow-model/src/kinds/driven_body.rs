@@ -35,15 +35,15 @@ pub(super) const KIND: Kind = Kind {
 };
 
 keys! { Keys [sample_keys formula_keys body_keys] {
-    weight: Option<Reals<3>> =
+    weight: Option<Reals<3>> [TORQUE] =
         "gravity: weight times the vector from the fixed point to the centre of mass, in the body; optional",
-    thruster: Option<Reals<3>> = "a constant torque in the body; optional",
-    damping: Option<values::Real> = "c of a torque -c omega in the body; optional",
+    thruster: Option<Reals<3>> [TORQUE] = "a constant torque in the body; optional",
+    damping: Option<values::Real> [ANGULAR_MOMENTUM] = "c of a torque -c omega in the body; optional",
     control: Option<Reals<2>> = "[k, c] of a law that brings the attitude to the identity; optional",
-    torque: Option<Texts> =
+    torque: Option<Texts> [TORQUE] =
         "a torque in the body, three formulas, or one whose value is a vector, in t, the angular velocity in the body \
          w1, w2, w3, the momentum in space m1, m2, m3 and the attitude g11, ..., g33; optional",
-    torque_space: Option<Texts> = "a torque in space, by formulas in the same variables; optional",
+    torque_space: Option<Texts> [TORQUE] = "a torque in space, by formulas in the same variables; optional",
 } }
 
 /// What a torque may depend on, in the order of [`variables`].

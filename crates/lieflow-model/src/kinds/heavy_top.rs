@@ -29,7 +29,7 @@ pub(super) const KIND: Kind = Kind {
 };
 
 keys! { Keys [body_keys] {
-    weight: Reals<3> = "weight times the vector from the fixed point to the centre of mass, in the body",
+    weight: Reals<3> [TORQUE] = "weight times the vector from the fixed point to the centre of mass, in the body",
     vertical: Option<Reals<3>> =
         "initial direction upward in the body, of length 1, instead of attitude: the attitude is then the least turn \
          that brings it to e3",

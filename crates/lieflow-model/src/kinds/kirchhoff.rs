@@ -23,10 +23,10 @@ pub(super) const KIND: Kind = Kind {
 };
 
 keys! { Keys {
-    inertia: Reals<3> = "moments of inertia about its axes, with the fluid that is moved",
-    mass: Reals<3> = "masses along its axes, with the fluid that is moved",
-    angular_momentum: Reals<3> = "initial angular momentum in the body",
-    linear_momentum: Reals<3> = "initial linear momentum in the body",
+    inertia: Reals<3> [INERTIA] = "moments of inertia about its axes, with the fluid that is moved",
+    mass: Reals<3> [MASS] = "masses along its axes, with the fluid that is moved",
+    angular_momentum: Reals<3> [ANGULAR_MOMENTUM] = "initial angular momentum in the body",
+    linear_momentum: Reals<3> [MOMENTUM] = "initial linear momentum in the body",
 } }
 
 /// The body with its initial momenta (μ, π).
@@ -83,7 +83,8 @@ impl System for Body {
             &["p1", "p2", "p3"],
             "linear momentum in the body",
             |_, _, (_, pi), row| row.extend(pi.iter()),
-        ),
+        )
+        .of_dimension(Dimension::MOMENTUM),
         Q::number("energy", "kinetic energy", |body, _, (mu, pi)| {
             let twice = mu.dot(&mu.component_div(&body.inertia));
             0.5 * (twice + pi.dot(&pi.component_div(&body.mass)))

@@ -28,16 +28,16 @@ pub(super) const KIND: Kind = Kind {
 };
 
 keys! { Keys [sample_keys formula_keys] {
-    omega: Texts =
+    omega: Texts [RATE] =
         "the angular velocity: three formulas, or one whose value is a vector, in t, the attitude g11, ..., g33 and the \
          position x1, x2, x3",
-    velocity: Texts =
+    velocity: Texts [VELOCITY] =
         "the velocity, by formulas in the same variables: that of the origin of the body; with frame = \"space\" that of \
          the point of the body at the origin of space",
     frame: Option<String> =
         "the axes of omega and velocity: \"body\" or \"space\"; optional, \"body\"",
     attitude: Option<Rows<3>> = "initial rotation from body to space; optional, the identity",
-    position: Option<Reals<3>> = "initial position; optional, the origin",
+    position: Option<Reals<3>> [LENGTH] = "initial position; optional, the origin",
 } }
 
 /// What a twist may depend on.

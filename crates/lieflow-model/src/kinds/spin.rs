@@ -21,8 +21,8 @@ pub(super) const KIND: Kind = Kind {
 };
 
 keys! { Keys {
-    field: Reals<3> = "angular velocity of the precession at t = 0",
-    rate: Real = "angular velocity at which the field turns",
+    field: Reals<3> [RATE] = "angular velocity of the precession at t = 0",
+    rate: Real [RATE] = "angular velocity at which the field turns",
     moment: Reals<3> = "initial moment",
 } }
 

@@ -1,7 +1,7 @@
 //! The keys of kinds: what is read and what listings say, stated once; and those that several kinds share.
 //!
 //! `keys! { Keys { … } }` states the keys of a kind. `keys! { Keys [formula_keys] { … } }` has those of a group too,
-//! and a method that takes them out, `formula_keys()`.
+//! and a method that takes them out, `formula_keys()`. A dimension may follow the type: `inertia: Reals<3> [INERTIA] = …`.
 
 use super::kind::{KeyInfo, Kind, ReadForms};
 use super::quantity::Quantity;
@@ -31,7 +31,7 @@ macro_rules! keys {
     ($name:ident [] { $($own:tt)* }) => {
         keys! { $name { $($own)* } }
     };
-    ($name:ident { $($key:ident: $type:ty = $meaning:expr,)* }) => {
+    ($name:ident { $($key:ident: $type:ty $([$dimension:ident])? = $meaning:expr,)* }) => {
         $crate::reader::read_by_keys! {
             struct $name {
                 $($key: $crate::reader::Key<$type>,)*
@@ -48,6 +48,7 @@ macro_rules! keys {
                     meaning: $meaning,
                     shape: <$type as $crate::reader::Read>::SHAPE,
                     optional: <$type as $crate::reader::Read>::OPTIONAL,
+                    dimension: $crate::schema::Dimension::first(&[$($crate::schema::Dimension::$dimension)?]),
                 },)*
                 $crate::problem::PARAMETERS,
             ];
@@ -62,8 +63,8 @@ macro_rules! group {
     (
         $(#[$doc:meta])* $table:ident in ($($room:tt)+) = $method:ident $dollar:tt,
         $(with { $($with:ident: $with_type:ty,)* })?
-        before { $($before:ident: $before_type:ty = $before_meaning:expr,)* }
-        after { $($after:ident: $after_type:ty = $after_meaning:expr,)* }
+        before { $($before:ident: $before_type:ty $([$before_dimension:ident])? = $before_meaning:expr,)* }
+        after { $($after:ident: $after_type:ty $([$after_dimension:ident])? = $after_meaning:expr,)* }
     ) => {
         $(#[$doc])*
         #[derive(Clone, Debug)]
@@ -76,9 +77,9 @@ macro_rules! group {
         macro_rules! $method {
             ($dollar name:ident [$dollar ($dollar more:ident)*] { $dollar ($dollar own:tt)* }) => {
                 $crate::problem::keys! { $dollar name [$dollar ($dollar more)*] {
-                    $($before: $before_type = $before_meaning,)*
+                    $($before: $before_type $([$before_dimension])? = $before_meaning,)*
                     $dollar ($dollar own)*
-                    $($after: $after_type = $after_meaning,)*
+                    $($after: $after_type $([$after_dimension])? = $after_meaning,)*
                 } }
 
                 impl $dollar name {
@@ -105,6 +106,7 @@ pub(crate) const PARAMETERS: KeyInfo = KeyInfo {
               [problem.parameters] of names with numbers, or with formulas of others; optional",
     shape: Parameters::SHAPE,
     optional: true,
+    dimension: None,
 };
 
 /// The key of a file of samples.
@@ -114,6 +116,7 @@ pub(crate) const SAMPLES: KeyInfo = KeyInfo {
               the other columns are variables of the formulas, functions of t; optional",
     shape: Shape::Samples,
     optional: true,
+    dimension: None,
 };
 
 pub(crate) use group;

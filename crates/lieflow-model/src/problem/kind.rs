@@ -43,6 +43,8 @@ pub struct KeyInfo {
     pub shape: Shape,
     /// True if it may be left out.
     pub optional: bool,
+    /// The dimension of its numbers, where that is the same in every problem of the kind.
+    pub dimension: Option<Dimension>,
 }
 
 /// A quantity that can be asked for.

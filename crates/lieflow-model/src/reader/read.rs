@@ -1,6 +1,6 @@
 //! Reads values of a scene. Each type says what it is read from, and each mistake has its place.
 
-use core::fmt::Display;
+use core::fmt::{self, Display};
 use core::ops::Range;
 use std::collections::BTreeMap;
 
@@ -48,6 +48,32 @@ pub enum Shape {
     Or(&'static Shape, &'static Shape),
     /// The name of a file of samples.
     Samples,
+}
+
+/// What the value is, in words.
+impl fmt::Display for Shape {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Shape::Bool => f.write_str("true or false"),
+            Shape::Whole => f.write_str("a whole number"),
+            Shape::Number => f.write_str("a number"),
+            Shape::Numbers(n) => write!(f, "a list of {n} numbers"),
+            Shape::List => f.write_str("a list of numbers"),
+            Shape::Rows => f.write_str("rows of numbers"),
+            Shape::Square(n) => write!(f, "{n} rows of {n} numbers"),
+            Shape::Text => f.write_str("a text"),
+            Shape::Formula => f.write_str("a formula"),
+            Shape::Formulas => f.write_str("a formula, or a list of formulas"),
+            Shape::ListOf(entry) => write!(f, "a list, of each {entry}"),
+            Shape::TableOf(entry) => write!(f, "a table of names, each {entry}"),
+            Shape::Keys(keys) => {
+                let names: Vec<&str> = keys.iter().map(|(name, _)| *name).collect();
+                write!(f, "a table with the keys {}", names.join(", "))
+            }
+            Shape::Or(a, b) => write!(f, "{a}, or {b}"),
+            Shape::Samples => f.write_str("the name of a CSV file"),
+        }
+    }
 }
 
 /// A type that is read from a value of a scene.

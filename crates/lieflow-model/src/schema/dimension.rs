@@ -30,6 +30,10 @@ impl Dimension {
     pub const TIME: Dimension = Dimension::of(0, 0, 0, 1);
     /// A length.
     pub const LENGTH: Dimension = Dimension::of(0, 1, 0, 0);
+    /// A mass.
+    pub const MASS: Dimension = Dimension::of(1, 0, 0, 0);
+    /// A moment of inertia.
+    pub const INERTIA: Dimension = Dimension::of(1, 2, 0, 0);
     /// A velocity.
     pub const VELOCITY: Dimension = Dimension::of(0, 1, 0, -1);
     /// An angle.
@@ -38,11 +42,23 @@ impl Dimension {
     pub const RATE: Dimension = Dimension::of(0, 0, 1, -1);
     /// An angular momentum.
     pub const ANGULAR_MOMENTUM: Dimension = Dimension::of(1, 2, 0, -1);
-    /// An energy or a torque.
+    /// A momentum.
+    pub const MOMENTUM: Dimension = Dimension::of(1, 1, 0, -1);
+    /// A torque: an energy for each radian.
+    pub const TORQUE: Dimension = Dimension::ENERGY;
+    /// An energy.
     pub const ENERGY: Dimension = Dimension::of(1, 2, 0, -2);
 
     const fn of(mass: i8, length: i8, angle: i8, time: i8) -> Self {
         Dimension { mass, length, angle, time }
+    }
+
+    /// The only one of a list.
+    pub(crate) const fn first(dimensions: &[Dimension]) -> Option<Dimension> {
+        match dimensions {
+            [first, ..] => Some(*first),
+            [] => None,
+        }
     }
 
     /// The product of powers of these names, such as `kg·m²/s`. `None` if a name is missing.

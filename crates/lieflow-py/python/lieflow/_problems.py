@@ -38,9 +38,9 @@ class Problem:
     kind: ClassVar[str] = ""
     #: The equations of motion.
     equation: ClassVar[str] = ""
-    #: The keys: name, what its value is, its type, whether it may be left out, what it means.
-    key_table: ClassVar[tuple[tuple[str, str, str, bool, str], ...]] = ()
-    #: What can be asked for: name, columns, meaning, unit.
+    #: The keys: name, what its value is, its type, whether it may be left out, what it means, its dimension in words.
+    key_table: ClassVar[tuple[tuple[str, str, str, bool, str, str], ...]] = ()
+    #: What can be asked for: name, columns, meaning, dimension in words.
     quantity_table: ClassVar[tuple[tuple[str, tuple[str, ...], str, str], ...]] = ()
 
     def __init__(self, **keys: Any) -> None:
@@ -251,10 +251,15 @@ def _document(kind: dict[str, Any]) -> str:
     def entry(head: str, text: str) -> str:
         return head + "\n" + textwrap.indent(textwrap.fill(text, 100), "    ")
 
-    keys = [entry(f"{name} : {what}{', optional' if optional else ''}", text) for name, text, what, optional, _ in kind["keys"]]
+    def of(dimension: str) -> str:
+        return f" [{dimension}]" if dimension else ""
+
+    keys = [
+        entry(f"{name} : {what}{', optional' if optional else ''}{of(dimension)}", text)
+        for name, text, what, optional, _, dimension in kind["keys"]
+    ]
     quantities = [
-        entry(f"{name} : {', '.join(columns)}{f' [{unit}]' if unit else ''}", text)
-        for name, columns, text, unit in kind["quantities"]
+        entry(f"{name} : {', '.join(columns)}{of(dimension)}", text) for name, columns, text, dimension in kind["quantities"]
     ]
     laws = [name if every else f"{name} (in some of these problems)" for name, every in kind["laws"]]
     head = f"{kind['summary'][:1].upper()}{kind['summary'][1:]}.\n\n{kind['equation']}"
@@ -281,7 +286,7 @@ def _make(kind: dict[str, Any]) -> type[Problem]:
         inspect.Parameter("self", inspect.Parameter.POSITIONAL_OR_KEYWORD),
         *(
             inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=None if optional else inspect.Parameter.empty)
-            for name, _, _, optional, _ in kind["keys"]
+            for name, _, _, optional, _, _ in kind["keys"]
         ),
     ])
     init.__name__, init.__signature__ = "__init__", names  # type: ignore[attr-defined]
@@ -291,8 +296,12 @@ def _make(kind: dict[str, Any]) -> type[Problem]:
         "__init__": init,
         "kind": kind["name"],
         "equation": kind["equation"],
-        "key_table": tuple((name, what, of, optional, text) for name, text, what, optional, of in kind["keys"]),
-        "quantity_table": tuple((name, tuple(columns), text, unit) for name, columns, text, unit in kind["quantities"]),
+        "key_table": tuple(
+            (name, what, of, optional, text, dimension) for name, text, what, optional, of, dimension in kind["keys"]
+        ),
+        "quantity_table": tuple(
+            (name, tuple(columns), text, dimension) for name, columns, text, dimension in kind["quantities"]
+        ),
     }
     return type(_class_name(kind["name"]), (Problem,), entries)
 

@@ -17,7 +17,7 @@ COLUMNS: int
 class Problem:
     kind: ClassVar[str]
     equation: ClassVar[str]
-    key_table: ClassVar[tuple[tuple[str, str, str, bool, str], ...]]
+    key_table: ClassVar[tuple[tuple[str, str, str, bool, str, str], ...]]
     quantity_table: ClassVar[tuple[tuple[str, tuple[str, ...], str, str], ...]]
     _keys: dict[str, Any]
     _problem: _lieflow.Problem

@@ -6,18 +6,18 @@ group! {
     /// The keys of a body and its start, of every kind of bodies. The library's moments are about principal axes.
     BodyKeys in (crate::kinds::body) = body_keys $,
     before {
-        inertia: Option<crate::reader::values::Diagonal> =
+        inertia: Option<crate::reader::values::Diagonal> [INERTIA] =
             "principal moments of inertia [J1, J2, J3], or the tensor of inertia as three rows",
         inverse_inertia: Option<crate::reader::values::Reals<3>> = "their reciprocals, instead of inertia",
         shape: Option<crate::kinds::body::Shape> =
             "instead of inertia: {kind = \"box\", mass, sides = [a, b, c]}, {kind = \"ellipsoid\", mass, \
              semi_axes}, {kind = \"cylinder\", mass, radius, height}",
-        omega_body: Option<crate::reader::values::Reals<3>> = "initial angular velocity in the body",
-        momentum_body: Option<crate::reader::values::Reals<3>> =
+        omega_body: Option<crate::reader::values::Reals<3>> [RATE] = "initial angular velocity in the body",
+        momentum_body: Option<crate::reader::values::Reals<3>> [ANGULAR_MOMENTUM] =
             "initial angular momentum in the body, instead of omega_body",
-        omega_space: Option<crate::reader::values::Reals<3>> =
+        omega_space: Option<crate::reader::values::Reals<3>> [RATE] =
             "initial angular velocity in space, instead of omega_body",
-        momentum_space: Option<crate::reader::values::Reals<3>> =
+        momentum_space: Option<crate::reader::values::Reals<3>> [ANGULAR_MOMENTUM] =
             "initial angular momentum in space, instead of omega_body",
         attitude: Option<crate::reader::values::Rows<3>> =
             "initial rotation from body to space, three rows; left out, it is the identity, but a heavy-top needs it or vertical",
