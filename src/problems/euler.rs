@@ -21,6 +21,10 @@ pub trait Hamiltonian<G: Adjoint> {
     fn value(&self, group: &G, m: &G::Dual) -> G::Scalar;
     /// ξ ← ∇H(m) ∈ 𝔤: ⟨δm, ξ⟩ = dH(m)·δm.
     fn gradient(&self, m: &G::Dual, xi: &mut G::Alg);
+    /// The degree of H as a polynomial of m. 0 if H is no polynomial.
+    fn degree(&self) -> u32 {
+        0
+    }
     /// Further invariants: the Casimirs of the algebra, integrals of this flow.
     fn further(&self) -> Vec<Invariant> {
         Vec::new()
@@ -77,6 +81,9 @@ impl<G: Adjoint, F: Fn(&G::Dual, &mut G::Alg)> Hamiltonian<G> for Kinetic<F> {
     #[inline]
     fn gradient(&self, m: &G::Dual, xi: &mut G::Alg) {
         (self.0)(m, xi);
+    }
+    fn degree(&self) -> u32 {
+        2
     }
 }
 
@@ -185,7 +192,7 @@ where
     Coadjoint: Action<G, Point = G::Dual>,
 {
     fn invariants(&self) -> Vec<Invariant> {
-        let energy = Invariant::of_the_flow("energy", 0);
+        let energy = Invariant::of_the_flow("energy", self.hamiltonian.degree());
         core::iter::once(energy).chain(self.hamiltonian.further()).collect()
     }
     fn values(&self, m: &G::Dual) -> Vec<G::Scalar> {

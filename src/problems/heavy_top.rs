@@ -162,6 +162,9 @@ impl<S: Real> Hamiltonian<Se3<S>> for HeavyTop<S> {
     fn gradient(&self, (mu, _): &(Vector3<S>, Vector3<S>), xi: &mut (Vector3<S>, Vector3<S>)) {
         *xi = (self.omega(mu), self.weight);
     }
+    fn degree(&self) -> u32 {
+        2
+    }
     fn further(&self) -> Vec<Invariant> {
         let length = Invariant::of_the_action("|γ|²", 2);
         let casimirs = [length, Invariant::of_the_action("μ·γ", 2).in_terms()];
@@ -171,7 +174,9 @@ impl<S: Real> Hamiltonian<Se3<S>> for HeavyTop<S> {
             Integral::Lagrange => Some("μ₃"),
             Integral::Kovalevskaya(_) => Some("Kovalevskaya's integral"),
         };
-        casimirs.into_iter().chain(fourth.map(|name| Invariant::of_the_flow(name, 0))).collect()
+        let degree = self.degree_of_fourth_integral();
+        let fourth = fourth.map(|name| Invariant::of_the_flow(name, degree));
+        casimirs.into_iter().chain(fourth).collect()
     }
     fn further_values(&self, y: &(Vector3<S>, Vector3<S>)) -> Vec<S> {
         self.casimirs(y).into_iter().chain(self.fourth_integral(y)).collect()

@@ -39,6 +39,13 @@ fn integrals_of_the_integrable_cases() {
     assert_eq!(names(kovalevskaya).last().unwrap(), "Kovalevskaya's integral");
     assert_eq!(names(euler).last().unwrap(), "|μ|²");
     assert_eq!(names(general), ["energy", "|γ|²", "μ·γ"]);
+    // A Gauss method keeps the energy, and Lagrange's and Euler's integral, since their degree is at most 2.
+    let degrees = |top: HeavyTop| -> Vec<u32> {
+        top.problem().invariants().into_iter().map(|i| i.law.degree).collect()
+    };
+    assert_eq!(degrees(lagrange), [2, 2, 2, 1]);
+    assert_eq!(degrees(euler), [2, 2, 2, 2]);
+    assert_eq!(degrees(kovalevskaya), [2, 2, 2, 4]);
     for top in [lagrange, kovalevskaya, euler, general] {
         has_order_4(&top.problem(), &START, 2.0, 40);
         keeps_its_invariants(&top.problem(), &START, 10.0, 4000, 1e-9);

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Sequence
 from time import perf_counter
 from typing import Any
@@ -430,7 +431,7 @@ def solve_ivp(
     if not (callback is None or callable(callback)):
         raise TypeError(f"callback: a value of type {type(callback).__name__}, expected a function of t and y")
     planned = events_of(events)
-    if np.isinf(span[1]) and callback is None and not any(event.terminal for event in planned):
+    if math.isinf(span[1]) and callback is None and not any(event.terminal for event in planned):
         raise ArgumentError("t_span", f"({span[0]}, {span[1]})", "an end, or an event with terminal")
     settings = settings_of(
         rtol, atol, first_step, min_step, max_step, max_steps, dt, steps, stops, dense_output, linear
@@ -561,14 +562,13 @@ def _of_problem(
 ) -> Result:
     asked = problem.asked(quantities)
     texts = tuple((f"events[{i}]", e.g) for i, e in enumerate(events) if isinstance(e.g, str))
-    model = problem._model(asked, texts)
+    model, layout = problem._both(asked, texts)
     if method is None:
         method = problem.method
         by_error = settings["dt"] is None and settings["steps"] is None
         # The points within a step of some methods, as Magnus methods, are shorter steps, and no numbers to keep.
         if settings["dense_output"] and not model.keeps_points(method)[by_error]:
             method = METHOD
-    layout = problem._layout(asked, texts)
     parts, number = [], 0
     for i, event in enumerate(events):
         g: Any = event.g

@@ -30,27 +30,33 @@ def warn_of_events(found: dict[str, Any], stacklevel: int) -> None:
 class Layout:
     """How the numbers of a row are arrays by name."""
 
-    __slots__ = ("_complex", "asked", "schema")
+    __slots__ = ("_asked", "_every", "asked", "schema")
 
     def __init__(self, schema: list[Any], asked: tuple[str, ...]) -> None:
         self.schema, self.asked = schema, asked
-        # Of complex numbers: the columns of their real and imaginary parts, and the factors of these.
-        self._complex = {name: np.array(parts).T for name, _, _, _, parts in schema if parts}
+        # For each quantity: its name, columns and shape, and of complex numbers the places of the real and imaginary parts in
+        # these columns, and the factors of these.
+        self._every: list[tuple[str, slice, tuple[int, ...], Any]] = []
+        start = 0
+        for name, columns, shape, _, parts in schema:
+            places, factors = np.array(parts).T if parts else (None, None)
+            form = None if places is None else (places.astype(int), factors)
+            self._every.append((name, slice(start, start + len(columns)), tuple(shape), form))
+            start += len(columns)
+        places_of = {entry[0]: entry for entry in self._every}
+        self._asked = [places_of[name] for name in asked]
 
     def split(self, rows: Array, every: bool = False) -> Quantities:
         """Return the arrays of rows, shape (..., n), by the names of quantities: those asked for, or all."""
-        out, start = {}, 0
-        for name, columns, shape, _, _ in self.schema:
-            end = start + len(columns)
-            if every or name in self.asked:
-                numbers: Any = rows[..., start:end]
-                if name in self._complex:
-                    places, factors = self._complex[name]
-                    re, im = np.moveaxis(numbers[..., places.astype(int)] * factors, -2, 0)
-                    numbers = re + 1j * im
-                out[name] = numbers.reshape(rows.shape[:-1] + tuple(shape))
-            start = end
-        return Quantities({name: out[name] for name in (out if every else self.asked)})
+        out, shape = {}, rows.shape[:-1]
+        for name, columns, of_one, form in self._every if every else self._asked:
+            numbers: Any = rows[..., columns]
+            if form is not None:
+                places, factors = form
+                re, im = np.moveaxis(numbers[..., places] * factors, -2, 0)
+                numbers = re + 1j * im
+            out[name] = numbers.reshape(shape + of_one)
+        return Quantities(out)
 
     def columns(self) -> list[str]:
         """Return the names of the columns of what was asked for, in the order of rows."""
