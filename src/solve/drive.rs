@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use super::drift::Drift;
 use super::events::{Events, Zero};
 use super::grid::SaveAt;
-use super::output::{AnyOutput, Slot};
+use super::output::{AnyOutput, Keeps, Slot};
 use super::points::AnyPoints;
 use super::solution::{Next, Status};
 use super::stats::RunError;
@@ -46,16 +46,6 @@ impl Patience {
     pub(super) fn after(&mut self, took: Duration) {
         self.0 = if took > Self::LONG { self.0 / 4 } else { 2 * self.0 }.clamp(1, Self::MOST);
     }
-}
-
-/// What is stored of each step.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Keeps {
-    Nothing,
-    /// Its start.
-    Starts,
-    /// The polynomial of its points.
-    Pieces,
 }
 
 /// The points of a run with its events.

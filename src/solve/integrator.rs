@@ -2,13 +2,12 @@
 
 use std::time::{Duration, Instant};
 
-use super::control::Controller;
 use super::drive::Patience;
 use super::held::Held;
 use super::points::{Estimator, Points};
-use super::stats::{Cadence, RunError, Stats};
+use super::stats::{RunError, Stats};
 use super::streak::{Alone, Reach};
-use super::timeline::{Chooser, Looked, Pace, Pacer, Timeline};
+use super::timeline::{Looked, Pace, Timeline};
 use crate::error::Error;
 use crate::methods::{Method, Step};
 use crate::problems::{PointOf, Problem};
@@ -56,16 +55,7 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
         };
         let field_at = (t0 != t1).then_some(t0);
         let (points, facts, error_order) = Points::new(held, adaptive, y, field_at)?;
-        let pacer = match pace {
-            Pace::Equal { grid, max_steps } => Pacer::Equal { grid, done: 0, max_steps },
-            Pace::ByError(control) => {
-                let controller = Controller::new(error_order.unwrap_or(facts.order));
-                let (h, wall, has_events) = (None, None, false);
-                Pacer::ByError(Chooser { control, controller, h, wall, has_events })
-            }
-        };
-        let cadence = Cadence::new(facts.stays_on_manifold);
-        let times = Timeline::new([t0, t1], pacer, cadence, facts);
+        let times = Timeline::new([t0, t1], pace, facts, error_order);
         Ok(Integrator { points, times, stops: Vec::new(), patience: Patience::new() })
     }
 

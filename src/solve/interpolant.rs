@@ -63,6 +63,44 @@ pub(super) struct Piece<P: Problem> {
     curve: Curve<P>,
 }
 
+/// The point of the chart and u(θ): a function writes both for a θ.
+type Coordinates<'a, P> = dyn FnMut(f64, &mut PointOf<P>, &mut AlgOf<P>) + 'a;
+
+/// u(θ) by its values at the nodes.
+fn chart_curve<P: Problem>(
+    problem: &P,
+    mut base: PointOf<P>,
+    coordinates: &mut Coordinates<'_, P>,
+) -> Result<Curve<P>, StepError> {
+    let group = problem.group();
+    let mut values: [AlgOf<P>; COUNT] = core::array::from_fn(|_| group.zero());
+    for (j, u) in values.iter_mut().enumerate() {
+        coordinates(node(j), &mut base, u);
+        if !group.is_finite(u) {
+            return Err(StepError::NotFinite { what: "the continuous extension" });
+        }
+    }
+    let mut coefficients: [AlgOf<P>; COUNT] = core::array::from_fn(|_| group.zero());
+    for (k, c) in coefficients.iter_mut().enumerate() {
+        group.combine(ScalarOf::<P>::lit(1.0), &of_values(k), &values, c);
+    }
+    Ok(Curve::Chart(base, coefficients))
+}
+
+/// The coefficients by the numbers of a point at each node, one node after the other.
+fn of_values_at_nodes(values: &[f64]) -> Vec<f64> {
+    let size = values.len() / COUNT;
+    let mut numbers = vec![0.0; values.len()];
+    for k in 0..COUNT {
+        for (j, w) in of_values(k).iter().enumerate() {
+            for i in 0..size {
+                numbers[k * size + i] += w * values[j * size + i];
+            }
+        }
+    }
+    numbers
+}
+
 impl<P: Problem> Piece<P> {
     /// The piece of the last step with this workspace, which is prepared for points within the step.
     pub(super) fn record<M: Method<P>>(
@@ -74,39 +112,17 @@ impl<P: Problem> Piece<P> {
     ) -> Result<Self, StepError> {
         let Step { n, t, h } = step;
         let typed = Step { n, t: ScalarOf::<P>::lit(t), h: ScalarOf::<P>::lit(h) };
-        let (group, one) = (problem.group(), ScalarOf::<P>::lit(1.0));
         let curve = match method.within(work) {
-            Within::Chart => {
-                let mut values: [AlgOf<P>; COUNT] = core::array::from_fn(|_| group.zero());
-                let mut base = from.clone();
-                for (j, u) in values.iter_mut().enumerate() {
-                    method.coordinates(problem, typed, node(j), &mut base, work, u);
-                    if !group.is_finite(u) {
-                        return Err(StepError::NotFinite { what: "the continuous extension" });
-                    }
-                }
-                let mut coefficients: [AlgOf<P>; COUNT] = core::array::from_fn(|_| group.zero());
-                for (k, c) in coefficients.iter_mut().enumerate() {
-                    group.combine(one, &of_values(k), &values, c);
-                }
-                Curve::Chart(base, coefficients)
-            }
+            Within::Chart => chart_curve(problem, from.clone(), &mut |theta, base, u| {
+                method.coordinates(problem, typed, theta, base, work, u);
+            })?,
             Within::Space => {
                 let mut values = Vec::new();
                 for j in 0..COUNT {
                     method.interpolate(problem, typed, node(j), from, work, at)?;
                     list(at, &mut |x| values.push(*x));
                 }
-                let size = values.len() / COUNT;
-                let mut numbers = vec![0.0; values.len()];
-                for k in 0..COUNT {
-                    for (j, w) in of_values(k).iter().enumerate() {
-                        for i in 0..size {
-                            numbers[k * size + i] += w * values[j * size + i];
-                        }
-                    }
-                }
-                Curve::Space(numbers)
+                Curve::Space(of_values_at_nodes(&values))
             }
             Within::Series => {
                 let mut terms = Vec::new();

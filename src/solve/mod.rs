@@ -58,8 +58,8 @@ use crate::methods::{Embedded, Method};
 use crate::problems::{Invariants, PointOf, Problem, ScalarOf};
 use crate::space::Numbers;
 use crate::tolerance::Rule;
-use drive::{Checkpoints, Keeps};
-use events::{Events, POINTS_MAX};
+use drive::Checkpoints;
+use events::{EventFunctions, EventRule, POINTS_MAX};
 use held::Held;
 use interpolant::Listing;
 use output::{Keep, Observe, Output, SeeEnd, Watch};
@@ -93,7 +93,9 @@ pub struct Solve<'a, P: Problem, M: Method<P>> {
     settings: Settings<'a>,
     /// For an adaptive step size.
     estimator: Option<Estimator<P, M>>,
-    events: Vec<Event<'a, PointOf<P>>>,
+    /// The events: what the driver knows of them, and their functions.
+    rules: Vec<EventRule>,
+    functions: Vec<EventFunctions<'a, PointOf<P>>>,
     /// The function that lists the numbers of a point, if the state is saved or restored.
     list: Option<Listing<P>>,
     watch: Option<Watch<P>>,
@@ -102,10 +104,11 @@ pub struct Solve<'a, P: Problem, M: Method<P>> {
 
 impl<P: Problem, M: Method<P>> core::fmt::Debug for Solve<'_, P, M> {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        let events: Vec<&str> = self.rules.iter().map(|rule| rule.name.as_str()).collect();
         f.debug_struct("Solve")
             .field("t_span", &self.settings.t_span)
             .field("save", &self.settings.save)
-            .field("events", &self.events)
+            .field("events", &events)
             .finish_non_exhaustive()
     }
 }
@@ -145,7 +148,8 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
             method,
             settings,
             estimator: None,
-            events: Vec::new(),
+            rules: Vec::new(),
+            functions: Vec::new(),
             list: None,
             watch: None,
             see_end: None,
@@ -231,7 +235,8 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
             let error = Error::out_of_range(arg, f64::from(points), expected);
             self.settings.wrong.get_or_insert(error);
         }
-        self.events.push(event);
+        self.rules.push(event.rule);
+        self.functions.push(event.functions);
         self
     }
 
@@ -372,31 +377,15 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
         kept: Keep<'k, P>,
         observe: &'k mut Observe<'k, PointOf<P>>,
     ) -> Ended<PointOf<P>> {
-        let Integrator { mut points, mut times, .. } = self.start(y0)?;
-        times.expect_events(!self.events.is_empty());
+        let Integrator { mut points, times, .. } = self.start(y0)?;
         points.list = self.list;
-        let (rules, functions) =
-            self.events.into_iter().map(|event| (event.rule, event.functions)).unzip();
-        let keeps = match kept {
-            Keep::Nothing => Keeps::Nothing,
-            Keep::Starts(_) => Keeps::Starts,
-            Keep::Pieces(_) => Keeps::Pieces,
-        };
-        let events = Events::new(rules, times.facts.order);
-        let mut drive = self.settings.drive(times, events, keeps);
-        let mut output = Output::new(points, functions, (self.watch, self.see_end), kept, observe);
+        let Solve { settings, rules, functions, watch, see_end, .. } = self;
+        let mut drive = settings.drive(times, rules, kept.keeps());
+        let mut output = Output::new(points, functions, (watch, see_end), kept, observe);
         let ended = drive.run(&mut output);
+        let stats = drive.times.stats(&output.points);
         let Output { points, occurrences, .. } = output;
-        let solution = Solution {
-            events: occurrences,
-            stats: drive.times.stats(&points),
-            drift: drive.drift,
-            ..Solution::new(drive.times.t, points.y)
-        };
-        match ended {
-            Ok(status) => Ok(Solution { status, ..solution }),
-            Err(error) => Err(Interrupted { error, solution: Some(Box::new(solution)) }),
-        }
+        Solution::of((drive.times.t, points.y), stats, drive.drift, occurrences).ended(ended)
     }
 
     /// Runs from y₀ and returns a continuous solution, which stores a point for each step.

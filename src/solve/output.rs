@@ -88,6 +88,27 @@ pub(super) enum Keep<'k, P: Problem> {
     Pieces(&'k mut Vec<Piece<P>>),
 }
 
+/// What is stored of each step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Keeps {
+    Nothing,
+    /// Its start.
+    Starts,
+    /// The polynomial of its points.
+    Pieces,
+}
+
+impl<P: Problem> Keep<'_, P> {
+    /// What the driver knows of it.
+    pub(super) fn keeps(&self) -> Keeps {
+        match self {
+            Keep::Nothing => Keeps::Nothing,
+            Keep::Starts(_) => Keeps::Starts,
+            Keep::Pieces(_) => Keeps::Pieces,
+        }
+    }
+}
+
 /// The function that sees the points of the output.
 pub(super) type Observe<'k, Y> = dyn FnMut(f64, &mut Y) -> Next + 'k;
 

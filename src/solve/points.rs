@@ -184,6 +184,41 @@ fn check_residual<P: Problem>(problem: &P, relative: ScalarOf<P>) -> Result<(), 
     }
 }
 
+/// Checks the start of a run, and the tolerance for it. Returns the scratch of the action.
+fn checked_start<P: Problem>(
+    problem: &P,
+    y: &PointOf<P>,
+    tolerance: Option<&Tolerance>,
+) -> Result<<P::Action as Action<P::Group>>::Work, Error> {
+    let (group, action) = (problem.group(), problem.action());
+    action.check(group, y)?;
+    let mut restore = action.work(group);
+    check_on_manifold(problem, &mut y.clone(), &mut restore)?;
+    action.check_member(group, y)?;
+    if let Some(tolerance) = tolerance {
+        tolerance.check_rounding::<ScalarOf<P>>()?;
+        let mut parts = tolerance.scales();
+        let none = action.error_ratio(group, &group.zero(), y, &mut parts);
+        tolerance.check(parts.asked(), none.any_below(f64::INFINITY))?;
+    }
+    Ok(restore)
+}
+
+/// Room for a value of f with its scratch. Checks f(t, y) at the time `at`.
+fn checked_field<P: Problem>(
+    problem: &P,
+    at: Option<f64>,
+    y: &PointOf<P>,
+) -> Result<(AlgOf<P>, P::Work), Error> {
+    let group = problem.group();
+    let (mut v, mut field) = (group.zero(), problem.work());
+    if let Some(t) = at {
+        problem.f(ScalarOf::<P>::lit(t), y, &mut v, &mut field);
+        group.check("f", &v)?;
+    }
+    Ok((v, field))
+}
+
 impl<'a, P: Problem, M: Method<P>> Points<'a, P, M> {
     /// Makes the points of a run that starts at y. Checks f(t, y) at the time `field_at`. Returns them with the costs of a
     /// step and, for an adaptive step size, the order of the error.
@@ -195,31 +230,19 @@ impl<'a, P: Problem, M: Method<P>> Points<'a, P, M> {
     ) -> Result<(Self, Facts, Option<usize>), Error> {
         let held = (problem, method);
         let (problem, method) = (&*held.0, &*held.1);
-        let (group, action) = (problem.group(), problem.action());
-        action.check(group, &y)?;
-        let mut restore = action.work(group);
-        check_on_manifold(problem, &mut y.clone(), &mut restore)?;
-        action.check_member(group, &y)?;
+        let restore =
+            checked_start(problem, &y, adaptive.as_ref().map(|(tolerance, _)| *tolerance))?;
         let facts = method.facts(problem);
         let mut error_order = None;
         let rates = match adaptive {
             None => None,
             Some((tolerance, estimator)) => {
-                tolerance.check_rounding::<ScalarOf<P>>()?;
-                let mut parts = tolerance.scales();
-                let none = action.error_ratio(group, &group.zero(), &y, &mut parts);
-                tolerance.check(parts.asked(), none.any_below(f64::INFINITY))?;
                 error_order = Some(facts.order_of_estimate()?);
-                let tolerance = tolerance.clone();
-                Some(Rates { estimator, tolerance, f: group.zero() })
+                Some(Rates { estimator, tolerance: tolerance.clone(), f: problem.group().zero() })
             }
         };
         let work = method.work(problem, &y)?;
-        let (mut v, mut field) = (group.zero(), problem.work());
-        if let Some(t) = field_at {
-            problem.f(ScalarOf::<P>::lit(t), &y, &mut v, &mut field);
-            group.check("f", &v)?;
-        }
+        let (v, field) = checked_field(problem, field_at, &y)?;
         let [from, to, orbit] = [y.clone(), y.clone(), y.clone()];
         let (problem, method) = held;
         let list = None;

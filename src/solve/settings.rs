@@ -3,9 +3,10 @@
 use std::sync::atomic::AtomicBool;
 
 use super::control::StepControl;
-use super::drive::{Checkpoints, Drive, Keeps, Patience};
-use super::events::Events;
+use super::drive::{Checkpoints, Drive, Patience};
+use super::events::{EventRule, Events};
 use super::grid::{SaveAt, TimeGrid, in_order, length_of};
+use super::output::Keeps;
 use super::timeline::{Pace, Timeline};
 use crate::error::Error;
 
@@ -117,8 +118,15 @@ impl<'a> Settings<'a> {
         Ok(pace)
     }
 
-    /// The run with these settings.
-    pub(super) fn drive(self, times: Timeline, events: Events, keeps: Keeps) -> Drive<'a> {
+    /// The run with these settings and events.
+    pub(super) fn drive(
+        self,
+        mut times: Timeline,
+        events: Vec<EventRule>,
+        keeps: Keeps,
+    ) -> Drive<'a> {
+        times.expect_events(!events.is_empty());
+        let events = Events::new(events, times.facts.order);
         let Settings { save, times_by_steps, cancel, progress, checkpoints, resume, .. } = self;
         let mut stops = self.stops.into_iter();
         let (t0, next_stop) = (times.t, stops.next());

@@ -98,6 +98,24 @@ impl<Y> Solution<Y> {
         }
     }
 
+    /// The solution of a run that ended at y, with these statistics and zeros of events.
+    pub(super) fn of(
+        (t, y): (f64, Y),
+        stats: Stats,
+        drift: Vec<Drift>,
+        events: Vec<Occurrence<Y>>,
+    ) -> Self {
+        Solution { events, stats, drift, ..Solution::new(t, y) }
+    }
+
+    /// The result of a run that ended so.
+    pub(super) fn ended(self, ended: Result<Status, RunError>) -> Ended<Y> {
+        match ended {
+            Ok(status) => Ok(Solution { status, ..self }),
+            Err(error) => Err(Interrupted { error, solution: Some(Box::new(self)) }),
+        }
+    }
+
     /// The times of the event with this number.
     pub fn times_of(&self, event: usize) -> impl Iterator<Item = f64> {
         self.events.iter().filter(move |found| found.event == event).map(|found| found.t)

@@ -78,7 +78,22 @@ fn plus(n: Option<u64>, more: Option<u64>) -> Option<u64> {
 }
 
 impl Timeline {
-    pub(super) fn new([t0, t1]: [f64; 2], pacer: Pacer, cadence: Cadence, facts: Facts) -> Self {
+    /// The times of a run over a span, by a method with these facts. The error of its steps has this order.
+    pub(super) fn new(
+        [t0, t1]: [f64; 2],
+        pace: Pace,
+        facts: Facts,
+        error_order: Option<usize>,
+    ) -> Self {
+        let pacer = match pace {
+            Pace::Equal { grid, max_steps } => Pacer::Equal { grid, done: 0, max_steps },
+            Pace::ByError(control) => {
+                let controller = Controller::new(error_order.unwrap_or(facts.order));
+                let (h, wall, has_events) = (None, None, false);
+                Pacer::ByError(Chooser { control, controller, h, wall, has_events })
+            }
+        };
+        let cadence = Cadence::new(facts.stays_on_manifold);
         let stats = Stats {
             evaluations: Some(0),
             maps: Some(MapCounts::default()),

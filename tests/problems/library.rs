@@ -15,22 +15,24 @@ mod spheres;
 mod torque;
 
 use lieflow::maps::{Cay, CoordinateMap, Exp};
-use lieflow::methods::{Method, Metric, Rk, Rkmk, tableau::DOP853, tableau::RK4};
+use lieflow::methods::{AnyMethod, Method, Metric, Rk, Rkmk, tableau::DOP853, tableau::RK4};
 use lieflow::problems::{Ambient, Invariants, Origin, PointOf, Problem, ScalarOf};
 use lieflow::{LieAlgebra, SaveAt, TimeGrid, integrate};
 
 const EPS: f64 = f64::EPSILON;
 
 /// y at t by so many steps.
-fn run<P: Problem, M: Method<P>>(
+fn run<P: Problem, M: Method<P> + Clone + Send + Sync>(
     problem: &P,
     method: &M,
     t: f64,
     steps: u64,
     y: &PointOf<P>,
 ) -> PointOf<P> {
+    // The driver is compiled once for each problem.
+    let method = AnyMethod::new(method.clone());
     let (mut y, grid) = (y.clone(), TimeGrid::with_steps([0.0, t], steps).unwrap());
-    integrate(problem, method, &grid, &SaveAt::Ends, &mut y, |_, _| {}).unwrap();
+    integrate(problem, &method, &grid, &SaveAt::Ends, &mut y, |_, _| {}).unwrap();
     y
 }
 
