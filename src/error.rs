@@ -130,6 +130,24 @@ pub enum Error {
         /// What was expected, in words.
         expected: String,
     },
+    /// A list has another length than it should have.
+    #[error("{arg}: length {found}, expected {expected}")]
+    Length {
+        /// The argument, with its index where it has one.
+        arg: String,
+        /// The length.
+        found: usize,
+        /// What was expected, in words.
+        expected: String,
+    },
+    /// A matrix is not symmetric.
+    #[error("{arg}: {arg} − {arg}ᵀ has an entry {}, expected 0: a symmetric {arg}", Plain(.skew))]
+    NotSymmetric {
+        /// The argument.
+        arg: &'static str,
+        /// The largest entry of the difference from the transpose.
+        skew: f64,
+    },
     /// An argument that is needed was not given.
     #[error("{arg}: not given, expected {expected}")]
     NotGiven {

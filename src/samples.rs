@@ -131,8 +131,9 @@ impl Samples {
     /// The cost is O(n) for a column of n values. The storage is four numbers for each value.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`], which names the entry, for: fewer than 2 times; times that do not increase; a column of
-    /// another length than the times; a number that is not finite; values so far apart that their slope is not finite.
+    /// [`Error::Length`] for fewer than 2 times, and for a column of another length than the times. [`Error::OutOfRange`],
+    /// which names the entry, for: times that do not increase; a number that is not finite; values so far apart that their
+    /// slope is not finite.
     pub fn new<C: AsRef<[f64]>>(
         times: &[f64],
         columns: &[C],
@@ -140,7 +141,8 @@ impl Samples {
     ) -> Result<Self, Error> {
         let n = times.len();
         if n < 2 {
-            return Err(Error::out_of_range("times.len()", n as f64, "at least 2"));
+            let expected = "at least 2".into();
+            return Err(Error::Length { arg: "times".into(), found: n, expected });
         }
         for (k, &t) in times.iter().enumerate() {
             if !t.is_finite() {
@@ -160,9 +162,12 @@ impl Samples {
         for (j, column) in columns.iter().enumerate() {
             let values = column.as_ref();
             if values.len() != n {
-                let arg = format!("columns[{j}].len()");
-                let expected = format!("{n} as there are times");
-                return Err(Error::out_of_range(arg, values.len() as f64, expected));
+                let (arg, found) = (format!("columns[{j}]"), values.len());
+                return Err(Error::Length {
+                    arg,
+                    found,
+                    expected: format!("{n} as there are times"),
+                });
             }
             if let Some(k) = values.iter().position(|x| !x.is_finite()) {
                 let arg = format!("columns[{j}][{k}]");

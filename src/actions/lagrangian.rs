@@ -70,7 +70,7 @@ impl Action<MatrixGroup> for Lagrangian {
     fn check_member(&self, _: &MatrixGroup, p: &Mat<f64>) -> Result<(), Error> {
         let skew = (p - p.transpose()).norm_max();
         match skew > OFF_M_MAX * p.norm_max() {
-            true => Err(Error::out_of_range("y − yᵀ", skew, "0: a symmetric y")),
+            true => Err(Error::NotSymmetric { arg: "y", skew }),
             false => Ok(()),
         }
     }

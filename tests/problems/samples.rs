@@ -162,13 +162,13 @@ fn a_table_that_is_none_is_refused() {
             assert!(error.starts_with(message), "{error}");
         }
     };
-    refused(&[], &[], "times.len() = 0.0, expected at least 2");
-    refused(&[1.0], &[&[1.0]], "times.len() = 1.0, expected at least 2");
+    refused(&[], &[], "times: length 0, expected at least 2");
+    refused(&[1.0], &[&[1.0]], "times: length 1, expected at least 2");
     refused(&[0.0, 2.0, 1.0], &[], "times[2] = 1.0, expected more than times[1] = 2");
     refused(&[0.0, 2.0, 2.0], &[], "times[2] = 2.0, expected more than times[1] = 2");
     refused(&[0.0, f64::NAN], &[], "times[1] = NaN, expected a finite number");
     refused(&[-1e308, 1e308], &[], "times = inf, expected times that span a finite length");
-    refused(&[0.0, 1.0], &[&[0.0, 1.0], &[0.0]], "columns[1].len() = 1.0, expected 2 as there are");
+    refused(&[0.0, 1.0], &[&[0.0, 1.0], &[0.0]], "columns[1]: length 1, expected 2 as there are");
     refused(&[0.0, 1.0], &[&[0.0, f64::INFINITY]], "columns[0][1] = inf, expected a finite");
     refused(&[0.0, 1e-3], &[&[0.0, 1e307]], "columns[0][1] = 1e307, expected a value whose slope");
     let error = Interpolation::named("quadratic").unwrap_err().to_string();

@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 use std::time::Duration;
 
-use lieflow::catalog::{MethodSpec, TABLEAUS, all_methods};
+use lieflow::catalog::{Family, MethodSpec, TABLEAUS, all_methods};
 use lieflow::check::{Finding, Record, Reference, Subject, Trial, TrialSteps, runs_agree};
 use lieflow::maps::MAPS;
 use lieflow::problems::Origin;
@@ -186,12 +186,13 @@ impl CheckedScene {
             self.see("the exact motion", finding);
         }
         for spec in methods {
-            let is_lie = spec.name == "rkmk4" || !spec.name.starts_with("rk");
-            let is_lie = is_lie || spec.name.starts_with("rkmk");
+            let is_classical = spec
+                .info()
+                .is_ok_and(|info| matches!(info.family, Family::RungeKutta | Family::Projection));
             let Some(method) = Method::new(model, scene, spec) else { continue };
             self.methods += 1;
             self.problem_types.insert(method.problem_type());
-            let reference = if is_lie { &of_classical } else { &of_lie };
+            let reference = if is_classical { &of_lie } else { &of_classical };
             let label = method.spec.label();
             for finding in runs_agree(&method, reference) {
                 self.see(&label, finding);

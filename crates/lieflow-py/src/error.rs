@@ -37,16 +37,22 @@ pub(crate) fn refused(py: Python<'_>, name: &str, error: &Error) -> PyErr {
 /// where the error has none.
 pub(crate) fn words(name: &str, error: &Error) -> (String, String, String) {
     let at_most = |tolerance: &f64| format!("at most {tolerance:e}");
+    // Times have the name of the argument that they come from.
+    let with_times = |arg: &str| match arg.strip_prefix("times") {
+        Some(rest) if name == "solve_ivp" => format!("t_eval{rest}"),
+        Some(rest) => format!("{name}{rest}"),
+        None => of(arg).to_owned(),
+    };
     match error {
         Error::OutOfRange { arg, value, expected } => {
-            // Times have the name of the argument that they come from.
-            let arg = match arg.strip_prefix("times") {
-                Some(rest) if name == "solve_ivp" => format!("t_eval{rest}"),
-                Some(rest) => format!("{name}{rest}"),
-                None => arg.clone(),
-            };
-            let (arg, value) = of_number(&arg, Plain(value).to_string());
-            (of(&arg).to_owned(), value, expected.clone())
+            (with_times(arg), Plain(value).to_string(), expected.clone())
+        }
+        Error::Length { arg, found, expected } => {
+            (with_times(arg), format!("length {found}"), expected.clone())
+        }
+        Error::NotSymmetric { arg, skew } => {
+            let value = format!("{arg} − {arg}ᵀ with an entry {}", Plain(skew));
+            (of(arg).into(), value, format!("0: a symmetric {arg}"))
         }
         Error::NotOnGroup { arg, group, residual, tolerance } => {
             let value = format!("a point at a relative distance of {residual:.1e} from {group}");
@@ -82,20 +88,6 @@ pub(crate) fn words(name: &str, error: &Error) -> (String, String, String) {
             ("dense_output".into(), format!("True with {with}"), format!("False: {why}"))
         }
         error => (name.into(), error.to_string(), String::new()),
-    }
-}
-
-/// The argument and its value in words, where the library tells a number of it.
-fn of_number(arg: &str, value: String) -> (String, String) {
-    if let Some(arg) = arg.strip_suffix(".len()") {
-        return (arg.into(), format!("length {value}"));
-    }
-    if let Some(arg) = arg.strip_prefix("the number of entries of ") {
-        return (arg.into(), format!("{value} entries"));
-    }
-    match arg {
-        "y − yᵀ" => ("y".into(), format!("y − yᵀ with an entry {value}")),
-        arg => (arg.into(), value),
     }
 }
 

@@ -83,7 +83,7 @@ def test_numbers_of_another_start():
     body = lf.RigidBody(inertia=[1.0, 2.0, 3.0], momentum_body=[0.0, 0.0, 3.0])
     r = lf.solve_ivp(body, (0, 1), [1.0, 0.0, 0.0], quantities="momentum_body")
     assert np.allclose(r.momentum_body[-1], [1, 0, 0])
-    with pytest.raises(lf.ArgumentError, match="y0: 2 entries, expected 3"):
+    with pytest.raises(lf.ArgumentError, match="y0: length 2, expected 3"):
         lf.solve_ivp(body, (0, 1), [1.0, 0.0], quantities="momentum_body")
     with pytest.raises(lf.ArgumentError, match="y0: quantities by name, expected the numbers of a state"):
         lf.solve_ivp(body, (1, 2), r.y_end, quantities="momentum_body")

@@ -305,15 +305,15 @@ impl<'a> Judge<'a> {
                     for (&start, &end) in first[law].iter().zip(&last[law]) {
                         // A sum that is 0 has the size of its terms.
                         let moved = relative(end - start, start.abs().max(first.terms(law)));
-                        let is_defect = law.name.ends_with("defect");
                         if law.law.is_some_and(|law| law.origin == Origin::Action) {
-                            let off = if is_defect { end } else { moved };
+                            let off = if law.is_distance { end } else { moved };
                             point.off_manifold = off.max(point.off_manifold);
                         }
                         match law.name {
                             "energy" => point.energy_error = moved,
-                            // A defect is a distance from the group already.
-                            _ if is_defect => point.group_residual = end,
+                            _ if law.is_distance => {
+                                point.group_residual = end.max(point.group_residual);
+                            }
                             _ => point.casimir_error = moved.max(point.casimir_error),
                         }
                     }

@@ -7,6 +7,7 @@ use super::{Looks, number};
 use crate::error::CliError;
 use crate::measure::{Candidate, Curve, Size};
 use crate::output::write_file;
+use lieflow::catalog::Family;
 use lieflow_figures::csv::{self, in_full, optional};
 use lieflow_figures::fields;
 use lieflow_figures::number::seconds;
@@ -19,8 +20,10 @@ fn look(candidate: &Candidate) -> Option<usize> {
     let maps = ["exp", "cay", "ccsk123", "ccsk321", "ccsk", "", "pade22"];
     match candidate.method.map.as_deref() {
         Some(map) => maps.iter().position(|name| *name == map),
-        None if candidate.method.name.starts_with("rk") => Some(5),
-        None => None,
+        None => {
+            let info = candidate.method.info();
+            info.is_ok_and(|info| info.family == Family::RungeKutta).then_some(5)
+        }
     }
 }
 

@@ -67,7 +67,7 @@ pub(super) fn parse(text: &str, names: &Names) -> Result<Parsed, Mistake> {
     let mut parser = Parser { text: &text, names, at: 0, depth: 0, build };
     let root = parser.sum()?;
     if parser.peek().is_some() {
-        return Err(parser.expected("an operator or the end"));
+        return Err(parser.expected_operator("the end"));
     }
     let entries = root.entries.iter().map(|&entry| parser.build.finish(entry)).collect();
     let too_long = || plain(format!("a formula of more than {LENGTH_MAX} operations"));
@@ -130,11 +130,17 @@ impl Parser<'_> {
             }
             (_, Some('°')) => Some("degrees are written 5*deg".into()),
             (_, Some('<' | '>' | '=')) => Some("a formula is a number, and no comparison".into()),
-            (Some(_), Some(c)) if what.contains("operator") && (starts_name(c) || c == '(') => {
-                Some(self.as_product())
-            }
             _ => None,
         };
+        mistake
+    }
+
+    /// What is next was not expected, but an operator or this.
+    fn expected_operator(&mut self, or: &str) -> Mistake {
+        let mut mistake = self.expected(&format!("an operator or {or}"));
+        if self.peek().is_some_and(|c| starts_name(c) || c == '(') {
+            mistake.help = Some(self.as_product());
+        }
         mistake
     }
 
@@ -260,7 +266,7 @@ impl Parser<'_> {
     fn close(&mut self) -> Result<(), Mistake> {
         match self.take(&[')']) {
             Some(_) => Ok(()),
-            None => Err(self.expected("an operator or `)`")),
+            None => Err(self.expected_operator("`)`")),
         }
     }
 
@@ -343,7 +349,7 @@ impl Parser<'_> {
     fn call(&mut self, name: &str, start: usize) -> Result<Value, Mistake> {
         let Some(called) = Called::named(name) else {
             if self.names.meaning(name).is_some() {
-                return Err(self.expected("an operator or the end"));
+                return Err(self.expected_operator("the end"));
             }
             let names: Vec<&str> = Called::names().collect();
             let mistake = self.of_form(&format!("unknown function `{name}`"), start);

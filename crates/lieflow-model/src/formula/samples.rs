@@ -3,6 +3,7 @@
 use std::hash::{Hash, Hasher};
 
 use fnv::FnvHasher;
+use lieflow::Error;
 use lieflow::samples::{Interpolation, Samples};
 
 use crate::reader::values::counted;
@@ -82,8 +83,14 @@ impl Table {
             }
         }
         let samples = Samples::new(&values[0], &values[1..], interpolation).map_err(|error| {
-            let refusal = Refusal::from(error).renamed(&[("times.len()", "rows")]);
-            Refusal::at(KEY, format!("{file}: {}", refusal.message))
+            let message = match error {
+                // All columns have as many values as there are rows.
+                Error::Length { found, expected, .. } => {
+                    format!("found {}, expected {expected}", amount(found, "rows"))
+                }
+                other => Refusal::from(other).message,
+            };
+            Refusal::at(KEY, format!("{file}: {message}"))
         })?;
         let mut hasher = FnvHasher::default();
         text.hash(&mut hasher);

@@ -163,5 +163,6 @@ pub(super) const fn symplectic_defect<S: System<Problem = OnMatrices>>() -> Quan
         MatrixGroup::sp(element.nrows()).map_or(f64::NAN, |group| group.defect(&element))
     })
     .kept(Law::by_the_action(2).on_scale(Scale::Terms))
+    .of_distance()
     .in_terms(|_, g: &Mat<f64>| squared_norm(g.as_ref()))
 }

@@ -125,7 +125,8 @@ impl System for Exponents {
         Q::number("frame_defect", "distance of Q'Q from the identity", |_, _, (q, _)| {
             MatrixGroup::so(q.nrows()).map_or(f64::NAN, |group| group.defect(q))
         })
-        .kept(Law::by_the_action(2).on_scale(Scale::One)),
+        .kept(Law::by_the_action(2).on_scale(Scale::One))
+        .of_distance(),
     ];
 
     fn problem(&self) -> Result<Start<Growing>, Error> {

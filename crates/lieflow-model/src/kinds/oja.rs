@@ -77,7 +77,8 @@ impl System for OjaFlow {
             norm((multiply(x.transpose(), x.as_ref()) - one).as_ref())
         })
         // Degree 0: the classical form of the equation keeps it on the manifold alone.
-        .kept(Law::by_the_action(0).on_scale(Scale::One)),
+        .kept(Law::by_the_action(0).on_scale(Scale::One))
+        .of_distance(),
     ];
 
     fn problem(&self) -> Result<Start<OnMatrices>, Error> {

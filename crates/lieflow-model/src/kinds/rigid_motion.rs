@@ -171,7 +171,8 @@ impl System for Motion {
         Q::number("attitude_defect", "distance of g'g from the identity", |_, _, (g, _)| {
             So3::new().defect(g)
         })
-        .kept(Law::by_the_action(2).on_scale(Scale::One)),
+        .kept(Law::by_the_action(2).on_scale(Scale::One))
+        .of_distance(),
     ];
 
     fn layer(&self) -> Layer {

@@ -119,7 +119,8 @@ impl System for Subspace {
         Q::number("projector_defect", "distance of P² from P", |_, _, p| {
             norm((multiply(p.as_ref(), p.as_ref()) - p).as_ref())
         })
-        .kept(Law::by_the_action(0).on_scale(Scale::One)),
+        .kept(Law::by_the_action(0).on_scale(Scale::One))
+        .of_distance(),
     ];
 
     fn problem(&self) -> Result<Start<OnMatrices>, Error> {

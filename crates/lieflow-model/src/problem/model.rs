@@ -347,7 +347,7 @@ impl Model {
     /// The rows at all times of these numbers, of a run of this model by this method.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] for other numbers.
+    /// [`Error::Length`] for another number of them.
     pub fn curve(&self, method: &MethodSpec, numbers: &[f64]) -> Result<Box<dyn RowCurve>, Error> {
         match &self.source {
             Source::Form { quantities, .. } => {

@@ -78,6 +78,8 @@ pub(crate) struct Quantity<S: System> {
     /// The choice that makes the columns of a run continuous.
     pub(crate) branch: fn(&S) -> Branch,
     law: Keepers<S>,
+    /// Is it a distance from M, which the exact motion keeps at 0?
+    pub(crate) is_distance: bool,
     /// The size of the terms, if the quantity is a sum.
     pub(crate) terms: Option<fn(&S, &PointOf<S>) -> f64>,
     /// True if a value that is not finite ends the run.
@@ -108,6 +110,7 @@ impl<S: System> Quantity<S> {
             numbers: |_| Numbers::Real,
             branch: |_| Branch::Single,
             law: Keepers::None,
+            is_distance: false,
             terms: None,
             is_state: false,
             missing: |_| None,
@@ -121,6 +124,11 @@ impl<S: System> Quantity<S> {
         value: fn(&S, Moment, &PointOf<S>) -> f64,
     ) -> Self {
         Self::new(name, &[], meaning, Value::Number(value))
+    }
+
+    /// The values are distances from M, which the exact motion keeps at 0.
+    pub(crate) const fn of_distance(self) -> Self {
+        Quantity { is_distance: true, ..self }
     }
 
     /// Numbers under these columns; with an `…` between the first and the last where the size of the problem says

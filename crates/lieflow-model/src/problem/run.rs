@@ -463,16 +463,13 @@ pub(crate) fn numbers_of<Y: Numbers>(y: &mut Y) -> Vec<f64> {
 /// y ← the point of these numbers; `arg` names them.
 ///
 /// # Errors
-/// [`Error::OutOfRange`] for another number of them.
+/// [`Error::Length`] for another number of them.
 pub(crate) fn set_numbers<Y: Numbers>(y: &mut Y, arg: &str, numbers: &[f64]) -> Result<(), Error> {
     let mut count = 0;
     y.each_number(&mut |_| count += 1);
     if numbers.len() != count {
-        return Err(Error::OutOfRange {
-            arg: format!("the number of entries of {arg}"),
-            value: numbers.len() as f64,
-            expected: format!("{count}, those of a state"),
-        });
+        let (found, expected) = (numbers.len(), format!("{count}, the length of a state"));
+        return Err(Error::Length { arg: arg.into(), found, expected });
     }
     let mut next = numbers.iter();
     y.each_number(&mut |x| *x = next.next().copied().unwrap_or(*x));

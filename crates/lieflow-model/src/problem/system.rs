@@ -194,6 +194,7 @@ impl<S: System> Run for On<S> {
         let (system, quantity) = (&self.system, &S::QUANTITIES[quantity]);
         let columns = quantity.column_names(system);
         schema.push(quantity.info.name, columns, quantity.law(system), quantity.is_state);
+        schema.set_distance(quantity.is_distance);
         if let Some(parts) = quantity.parts {
             schema.set_parts(parts(system));
         }

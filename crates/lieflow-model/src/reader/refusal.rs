@@ -97,6 +97,9 @@ impl From<Error> for Refusal {
             Error::OutOfRange { arg, value, expected } => {
                 Error::OutOfRange { arg: path_of(&arg), value, expected }
             }
+            Error::Length { arg, found, expected } => {
+                Error::Length { arg: path_of(&arg), found, expected }
+            }
             Error::NotFiniteEntry { arg, row, col, value } => {
                 Error::NotFiniteEntry { arg, row: row + 1, col: col + 1, value }
             }
@@ -108,7 +111,7 @@ impl From<Error> for Refusal {
                 let key = if kind == "method" { "name" } else { kind };
                 return Refusal::unknown(kind, &name, &expected).about(key);
             }
-            Error::OutOfRange { arg, .. } => Some(arg),
+            Error::OutOfRange { arg, .. } | Error::Length { arg, .. } => Some(arg),
             Error::NotFiniteEntry { arg, row, col, .. } => Some(format!("{arg}[{row},{col}]")),
             Error::NotSquare { arg, .. }
             | Error::Shape { arg, .. }
@@ -117,6 +120,7 @@ impl From<Error> for Refusal {
             | Error::Determinant { arg, .. }
             | Error::Trace { arg, .. }
             | Error::NotGiven { arg, .. }
+            | Error::NotSymmetric { arg, .. }
             | Error::Reflection { arg }
             | Error::Singular { arg, .. } => Some(arg.into()),
             Error::Unsupported { what, .. } => Some(what.into()),

@@ -125,6 +125,8 @@ pub struct Observable {
     pub law: Option<Law>,
     /// Is it a state, so that a value that is not finite ends the run?
     pub is_state: bool,
+    /// Is it a distance from M, which the exact motion keeps at 0?
+    pub is_distance: bool,
     /// Its parts: all of its columns, in order.
     pub parts: Vec<Component>,
     /// What a run chooses so that the columns are continuous.
@@ -197,9 +199,27 @@ impl Schema {
         let branch = Branch::Single;
         let shape = if columns.len() == 1 { Vec::new() } else { vec![columns.len()] };
         let numbers = Numbers::Real;
-        let observable =
-            Observable { name, columns, law, is_state, parts, branch, shape, numbers, place, size };
+        let observable = Observable {
+            name,
+            columns,
+            law,
+            is_state,
+            is_distance: false,
+            parts,
+            branch,
+            shape,
+            numbers,
+            place,
+            size,
+        };
         self.observables.push(observable);
+    }
+
+    /// Make the last observable a distance from M, where it is one.
+    pub(crate) fn set_distance(&mut self, is_distance: bool) {
+        if let Some(observable) = self.observables.last_mut() {
+            observable.is_distance = is_distance;
+        }
     }
 
     /// Give the last observable these parts.

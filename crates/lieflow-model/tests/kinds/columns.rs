@@ -351,3 +351,24 @@ fn many_columns_are_read() {
     Scene::parse("scene", &text).unwrap_or_else(|error| panic!("{error}"));
     assert!(begin.elapsed().as_secs_f64() < 10.0, "{:?}", begin.elapsed());
 }
+
+/// What is called a defect is a distance from M, and nothing else is.
+#[test]
+fn distances_are_known() {
+    let mut distances = std::collections::BTreeSet::new();
+    for scene in BUNDLED {
+        let scene = Scene::parse(scene.name, scene.text);
+        let Ok(scene) = scene else { continue };
+        let problem = &scene.problem;
+        let all = (problem.kind().quantities)();
+        let names =
+            all.iter().map(|quantity| quantity.name).filter(|name| problem.columns(name).is_ok());
+        for name in names {
+            let model = scene.model_with(scene.layer, &[name]).unwrap();
+            let is_distance = model.schema().get(name).unwrap().is_distance;
+            assert_eq!(is_distance, name.contains("defect"), "{}: {name}", scene.name);
+            distances.extend(is_distance.then_some(name));
+        }
+    }
+    assert!(distances.contains("defects") && distances.len() > 5, "{distances:?}");
+}

@@ -179,7 +179,7 @@ fn what_is_no_file_of_samples_is_refused_at_its_line() {
         ("t,u\n0,1\n1,1e999\n", &["column u: found `1e999`, expected a finite number"]),
         ("t,u\n0,1\nnan,1\n", &["line 3: column t: found `nan`, expected a finite number"]),
         ("t,u\n0,1\n2,1\n2,3\n", &["line 4: column t: found `2`, expected more than 2 of the row"]),
-        ("t,u\n0,1\n", &["data.csv: rows = 1.0, expected at least 2"]),
+        ("t,u\n0,1\n", &["data.csv: found 1 row, expected at least 2"]),
         ("t,u\n0,0\n1e-3,1e307\n", &["data.csv: columns[1][2] = 1e307", "slope"]),
         ("t,w1\n0,1\n1,2\n", &["data.csv: `w1` is the name of a variable already", "another name"]),
         ("t,u,t\n0,1,0\n1,2,1\n", &["data.csv: `t` is the name of a variable already"]),

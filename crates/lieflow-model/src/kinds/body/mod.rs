@@ -223,21 +223,21 @@ impl BodyKeys {
         Ok((attitude, None))
     }
 
-    /// The key of the initial velocity or momentum, and its value.
-    fn rate(&self) -> Result<(&'static str, [f64; 3]), ReadError> {
+    /// The initial velocity or momentum.
+    fn rate(&self) -> Result<Rate, ReadError> {
         let keys = [
-            ("omega_body", &self.omega_body),
-            ("momentum_body", &self.momentum_body),
-            ("omega_space", &self.omega_space),
-            ("momentum_space", &self.momentum_space),
+            ("omega_body", &self.omega_body, false, false),
+            ("momentum_body", &self.momentum_body, true, false),
+            ("omega_space", &self.omega_space, false, true),
+            ("momentum_space", &self.momentum_space, true, true),
         ];
-        at_most_one(keys.map(|(key, x)| (key, is_given(x))))?;
-        for (key, x) in keys {
-            if let Some(x) = seen(x)? {
-                return Ok((key, x.0));
+        at_most_one(keys.map(|(key, x, ..)| (key, is_given(x))))?;
+        for (key, x, is_momentum, in_space) in keys {
+            if let Some(Reals(x)) = *seen(x)? {
+                return Ok(Rate { key, x, is_momentum, in_space });
             }
         }
-        let names = keys.map(|(key, _)| format!("`{key}`")).join(", ");
+        let names = keys.map(|(key, ..)| format!("`{key}`")).join(", ");
         Err(Refusal::section(format!("expected one of {names}, found none")).into())
     }
 
@@ -282,17 +282,24 @@ fn is_given<T>(key: &Key<Option<T>>) -> bool {
     matches!(key, Ok(Some(_)))
 }
 
-/// The initial momentum in the body along the principal axes, by the velocity or the momentum of a key; g as the scene
-/// has it.
+/// An initial velocity or momentum, and the key that states it.
+struct Rate {
+    key: &'static str,
+    x: [f64; 3],
+    is_momentum: bool,
+    in_space: bool,
+}
+
+/// The initial momentum in the body along the principal axes, by a velocity or a momentum; g as the scene has it.
 fn momentum(
-    (key, x): (&str, [f64; 3]),
+    Rate { key, x, is_momentum, in_space }: Rate,
     inertia: [f64; 3],
     axes: Option<&Matrix3<f64>>,
     g: &Matrix3<f64>,
 ) -> Result<Vector3<f64>, Refusal> {
-    let x = if key.ends_with("space") { g.tr_mul(&x.into()) } else { x.into() };
+    let x = if in_space { g.tr_mul(&x.into()) } else { x.into() };
     let x = axes.map_or(x, |axes| axes.tr_mul(&x));
-    if key.starts_with("momentum") {
+    if is_momentum {
         return Ok(x);
     }
     let momentum = Vector3::from(inertia).component_mul(&x);

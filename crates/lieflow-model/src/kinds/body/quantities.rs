@@ -246,5 +246,6 @@ pub(in crate::kinds) const fn attitude_defect<S: AsBody>() -> Quantity<S> {
         |body: &S, _, y| So3::new().defect(&body.orientation(y).rotation()),
     )
     .kept(Law::by_the_action(2).on_scale(Scale::One))
+    .of_distance()
     .missing_where(S::without_orientation)
 }

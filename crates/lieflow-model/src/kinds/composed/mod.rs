@@ -338,6 +338,7 @@ impl System for Composed {
         )
         .with_columns(|composed| kept(composed.rotations()))
         .kept(Law::by_the_action(2).on_scale(Scale::One))
+        .of_distance()
         .missing_where(|composed| {
             let without = composed.rotations().next().is_none();
             without.then_some("no part is a rotation")

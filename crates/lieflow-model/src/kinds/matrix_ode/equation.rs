@@ -200,6 +200,7 @@ impl System for Equation {
             },
         )
         .kept(Law::by_the_action(2))
+        .of_distance()
         .in_terms(|_, y| squared_norm(y.as_ref()))
         .missing_where(|equation| {
             equation.unless_kept("group_defect", "it is for translation on so, sp, so(p,q), u and su")

@@ -407,7 +407,7 @@ impl Own {
     /// The curve of these numbers, for the method that made them.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] for other numbers.
+    /// [`Error::Length`] for another number of them.
     pub fn curve(
         &self,
         method: &MethodSpec,

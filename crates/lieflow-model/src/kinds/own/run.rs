@@ -137,7 +137,7 @@ pub trait Run: Send + Sync {
     /// As [`Own::curve`](super::Own::curve).
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] for other numbers.
+    /// [`Error::Length`] for another number of them.
     fn curve(
         &self,
         method: &MethodSpec,

@@ -286,6 +286,7 @@ impl<R: Representation> System for Body<R> {
             "distance of the quaternion's square from 1",
             |body, _, y| UnitQuaternions.defect(&body.orientation(y).quaternion()),
         )
+        .of_distance()
         .kept_where(|body| {
             let law = Law::by_the_action(2).on_scale(Scale::One);
             body.spec.quaternion.map(|_| law)
