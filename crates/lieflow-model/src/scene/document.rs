@@ -6,6 +6,7 @@ use core::ops::Range;
 use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue};
 
+use super::brackets::unclosed;
 use super::error::{Mistakes, SceneError};
 use crate::formula::{Constants, DECIMAL_POINT, of_keys};
 use crate::kinds;
@@ -70,19 +71,22 @@ pub(super) struct Document<'a> {
 impl<'a> Document<'a> {
     /// Parses a text, which is that of a file, or that with settings.
     pub(super) fn parse(source: &'a str, text: &'a str, file: &'a str) -> Result<Self, SceneError> {
-        match DeTable::parse(text) {
-            Ok(root) => {
-                let root = root.into_inner();
-                let constants = constants_of(&root);
-                Ok(Document { source, text, file, root, constants })
-            }
-            Err(error) => {
-                let message = error.message().lines().collect::<Vec<_>>().join("; ");
-                let refused = SceneError::new(source, format!("not TOML: {message}"));
-                let help = help_for_text(text, error.span().unwrap_or_default());
-                Err(refused.at(text, file, error.span()).with_help(help))
-            }
+        let (root, mistakes) = DeTable::parse_recoverable(text);
+        // Those within values come after all others. Only the first in the text does not follow from another one.
+        let start = |error: &toml::de::Error| error.span().unwrap_or_default().start;
+        let line = |error: &toml::de::Error| text[..start(error)].matches('\n').count();
+        let Some(error) = mistakes.into_iter().min_by_key(line) else {
+            let root = root.into_inner();
+            let constants = constants_of(&root);
+            return Ok(Document { source, text, file, root, constants });
+        };
+        if let Some((place, message)) = unclosed(text, start(&error)) {
+            return Err(SceneError::new(source, message).at(text, file, Some(place)));
         }
+        let message = error.message().lines().collect::<Vec<_>>().join("; ");
+        let refused = SceneError::new(source, format!("not TOML: {message}"));
+        let help = help_for_text(text, error.span().unwrap_or_default());
+        Err(refused.at(text, file, error.span()).with_help(help))
     }
 
     /// What the scene says, without comments, spaces and the order of keys.

@@ -1,5 +1,6 @@
 //! Scenes: a problem, a method, a time span and what to write, as a TOML file.
 
+mod brackets;
 mod bundled;
 mod columns;
 mod defaults;
