@@ -46,8 +46,8 @@ pub fn ellipsoid(mass: f64, semi_axes: [f64; 3]) -> Result<[f64; 3], Error> {
 ///
 /// # Errors
 /// [`Error::OutOfRange`] for a mass or edge that is not finite and positive.
-pub fn cuboid(mass: f64, edges: [f64; 3]) -> Result<[f64; 3], Error> {
-    of_axes(mass, 1.0 / 12.0, edges, "edges")
+pub fn cuboid(mass: f64, sides: [f64; 3]) -> Result<[f64; 3], Error> {
+    of_axes(mass, 1.0 / 12.0, sides, "sides")
 }
 
 /// The principal moments of a solid cylinder about e₃.

@@ -170,7 +170,7 @@ fn all_mistakes_are_told_at_once() {
         ":9:1: unknown key `nmae`",
         ":9:8: unknown method `rkmk5`",
         ":13:15: \"two\" is not a number",
-        ":14:6: dt = -1.0",
+        ":14:6: dt = -1",
         ":15:2: unknown key `outptu`",
     ];
     expect(&text, &all);

@@ -34,12 +34,9 @@ impl Lets {
     /// As [`Formula::check_form`], of all formulas.
     pub fn check_form(&self, key: &str) -> Result<(), ReadError> {
         let mut mistakes = ReadError::default();
-        for (name, texts) in
-            self.0.iter().filter_map(|(name, texts)| Some((name, texts.as_ref().ok()?)))
-        {
-            for (i, text) in texts.texts().enumerate() {
-                let (place, _) = texts.entry(&key.entry(name), i);
-                mistakes.keep(Formula::check_form(&place, text));
+        for (name, texts) in &self.0 {
+            if let Ok(texts) = texts {
+                mistakes.keep(texts.check_form(&key.entry(name)));
             }
         }
         mistakes.or(Some(()))

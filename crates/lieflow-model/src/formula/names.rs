@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use lieflow::samples::Samples;
+use lieflow::samples::{Interpolation, Samples};
 
 use super::functions::{CALLED, CONSTANTS};
 use super::lost::Losses;
@@ -124,14 +124,14 @@ impl Names {
     pub fn with_samples(
         mut self,
         file: Option<SamplesFile>,
-        interpolation: Option<&str>,
+        interpolation: Option<Interpolation>,
     ) -> Result<Names, Refusal> {
         let Some(file) = file else {
             let alone =
                 || Refusal::at("interpolation", "`interpolation` is of `samples`: add them");
             return interpolation.map_or(Ok(self), |_| Err(alone()));
         };
-        let table = Table::read(file, interpolation)?;
+        let table = Table::read(file, interpolation.unwrap_or(Interpolation::Linear))?;
         for (i, column) in table.columns.iter().enumerate() {
             let mut checked = self.check("samples", column);
             if table.columns[..i].contains(column) {

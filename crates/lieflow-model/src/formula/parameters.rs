@@ -8,7 +8,7 @@ use toml::de::{DeTable, DeValue};
 use super::names::{Names, continues_name};
 use super::numbers::evaluated;
 use crate::reader::values::Real;
-use crate::reader::{Read, ReadError, Shape, Value};
+use crate::reader::{KeyPath, Mistake, Read, ReadError, Refusal, Shape, Value};
 
 /// `[problem.parameters]`: constants, `k = 3.0`. Each may be a formula of others, `w = "sqrt(k/m)"`, in any order.
 #[derive(Clone, Debug, Default)]
@@ -48,7 +48,7 @@ impl Parameters {
     ///
     /// # Errors
     /// A refusal of `key` for a variable that is not a valid name (letters, digits and underscores, no digit first), and of
-    /// `parameters` for each parameter that has the name of a variable.
+    /// each parameter that has the name of a variable.
     pub fn names<N: Into<String>>(
         &self,
         key: &str,
@@ -56,7 +56,7 @@ impl Parameters {
     ) -> Result<Names, ReadError> {
         let (mut names, mut mistakes) = (Names::of(key, variables)?, ReadError::default());
         for (name, value) in &self.0 {
-            match (names.check_new("parameters", name), value) {
+            match (names.check_new(&"parameters".entry(name), name), value) {
                 (Ok(()), Some(value)) => names.add_constant(name, *value),
                 // With a wrong number formulas can be read, and not run.
                 (Ok(()), None) => names.add_constant(name, f64::NAN),
@@ -108,9 +108,8 @@ struct Reader<'v, 'a, 'm> {
 
 impl<'v> Reader<'v, '_, '_> {
     fn define(&mut self, name: &'v str) {
-        let Some(value) = self.table.get(name).filter(|_| !self.done.0.contains_key(name)) else {
-            return;
-        };
+        let entry = self.table.get_key_value(name).filter(|_| !self.done.0.contains_key(name));
+        let Some((key, value)) = entry else { return };
         let wrong = match self.path.iter().position(|above| *above == name) {
             Some(start) => {
                 let circle = [&self.path[start..], &[name]].concat().join(" needs ");
@@ -128,7 +127,9 @@ impl<'v> Reader<'v, '_, '_> {
             return;
         }
         let evaluated = match (self.names.check("parameters", name), value.get_ref()) {
-            (Err(refusal), _) => Err(refusal.into()),
+            (Err(Refusal { message, help, .. }), _) => {
+                Err(Mistake::Wrong(key.span(), message, help).into())
+            }
             (Ok(()), DeValue::String(text)) => {
                 self.path.push(name);
                 for word in words(text) {

@@ -41,13 +41,11 @@ pub(super) struct Table {
 
 impl Table {
     /// # Errors
-    /// A refusal of `samples` that says at which line of the file; one of `interpolation`.
+    /// A refusal of `samples` that says at which line of the file.
     pub(super) fn read(
         SamplesFile(file, text): SamplesFile,
-        interpolation: Option<&str>,
+        interpolation: Interpolation,
     ) -> Result<Table, Refusal> {
-        let interpolation =
-            interpolation.map_or(Ok(Interpolation::Linear), Interpolation::named)?;
         let refused = |line: usize, message: String| {
             Refusal::at(KEY, format!("{file}, line {line}: {message}"))
         };

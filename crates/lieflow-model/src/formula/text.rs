@@ -54,14 +54,51 @@ impl Texts {
             };
             return Ok(entries.map(formula).collect());
         }
-        let found = match self {
-            Texts::List(_) => format!("found {}, expected {count}", amount(found, "formulas")),
-            Texts::One(_) => {
-                let found = if found == 1 { "a number".into() } else { format!("{found} numbers") };
-                format!("the value of this formula is {found}, expected a vector of {count}")
+        if matches!(self, Texts::List(_)) {
+            return Err(other_count(key, found, count));
+        }
+        let found = if found == 1 { "a number".into() } else { format!("{found} numbers") };
+        let message =
+            format!("{key}: the value of this formula is {found}, expected a vector of {count}");
+        Err(Refusal::at(key, message).into())
+    }
+
+    /// The formulas of this number of components, where both the number and the names are known.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read). Of those, where something is not known: mistakes whatever names mean, and another number of
+    /// formulas in a list.
+    pub fn read_by(
+        &self,
+        key: &str,
+        count: Option<usize>,
+        names: Result<&Names, ReadError>,
+    ) -> Result<Vec<Formula>, ReadError> {
+        if let (Some(count), Ok(names)) = (count, &names) {
+            return self.read(key, count, names);
+        }
+        self.check_form(key)?;
+        match (self, count) {
+            (Texts::List(list), Some(count)) if list.len() != count => {
+                Err(other_count(key, list.len(), count))
             }
-        };
-        Err(Refusal::at(key, format!("{key}: {found}")).into())
+            _ => Err(ReadError::known()),
+        }
+    }
+
+    /// Checks the form of all formulas, where their names are not known.
+    ///
+    /// # Errors
+    /// As [`Formula::check_form`], of all formulas.
+    pub(super) fn check_form(&self, key: &str) -> Result<(), ReadError> {
+        let mut mistakes = ReadError::default();
+        if matches!(self, Texts::List(list) if list.is_empty()) {
+            mistakes.add(no_formulas(key));
+        }
+        for (i, text) in self.texts().enumerate() {
+            mistakes.keep(Formula::check_form(&self.entry(key, i).0, text));
+        }
+        mistakes.or(Some(()))
     }
 
     /// The entries of the value, row by row, and the number of its rows.
@@ -72,9 +109,7 @@ impl Texts {
     ) -> Result<(usize, Vec<Tape>), ReadError> {
         match self {
             Texts::One(text) => read_value(key, &text.0, names),
-            Texts::List(list) if list.is_empty() => {
-                Err(Refusal::at(key, format!("{key}: no formulas, expected at least one")).into())
-            }
+            Texts::List(list) if list.is_empty() => Err(no_formulas(key)),
             Texts::List(list) => {
                 let mut mistakes = ReadError::default();
                 let tapes = list.iter().enumerate().map(|(i, text)| {
@@ -90,6 +125,15 @@ impl Texts {
     }
 }
 
+fn no_formulas(key: &str) -> ReadError {
+    Refusal::at(key, format!("{key}: no formulas, expected at least one")).into()
+}
+
+fn other_count(key: &str, found: usize, count: usize) -> ReadError {
+    let found = amount(found, "formulas");
+    Refusal::at(key, format!("{key}: found {found}, expected {count}")).into()
+}
+
 /// A formula with a name: [`Texts`], or rows of the entries of a matrix.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum NamedTexts {
@@ -100,6 +144,23 @@ pub enum NamedTexts {
 }
 
 impl NamedTexts {
+    /// Checks the form of all formulas, where their names are not known.
+    ///
+    /// # Errors
+    /// As [`Formula::check_form`], of all formulas.
+    pub(super) fn check_form(&self, key: &str) -> Result<(), ReadError> {
+        match self {
+            NamedTexts::Texts(texts) => texts.check_form(key),
+            NamedTexts::Rows(_) => {
+                let mut mistakes = ReadError::default();
+                for (i, text) in self.texts().enumerate() {
+                    mistakes.keep(Formula::check_form(&self.entry(key, i).0, text));
+                }
+                mistakes.or(Some(()))
+            }
+        }
+    }
+
     /// All texts.
     pub(super) fn texts(&self) -> impl Iterator<Item = &str> {
         let (texts, rows) = match self {

@@ -31,10 +31,10 @@ keys! { Keys {
 
 read_by_keys! {
     struct ElementKeys {
-        kind: String,
-        length: Real,
-        k: Option<Real>,
-        radius: Option<Real>,
+        kind: Key<String>,
+        length: Key<Real>,
+        k: Key<Option<Real>>,
+        radius: Key<Option<Real>>,
     }
 }
 
@@ -48,27 +48,49 @@ struct BeamLine {
 
 type Q = Quantity<BeamLine>;
 
-/// An element with (k_x, k_z).
-fn element(keys: &ElementKeys) -> Result<(Element, [f64; 2]), String> {
-    let length = keys.length.0;
-    if length <= 0.0 {
-        return Err(format!("length = {length}, expected a number > 0"));
-    }
-    match (keys.kind.as_str(), keys.k, keys.radius) {
-        ("drift", None, None) => Ok((Element::Drift { length }, [0.0, 0.0])),
-        ("quadrupole", Some(Real(k)), None) => Ok((Element::Quadrupole { length, k }, [k, -k])),
-        ("dipole", None, Some(Real(radius))) if radius != 0.0 => {
-            Ok((Element::Dipole { length, radius }, [1.0 / (radius * radius), 0.0]))
+/// An element with (k_x, k_z), and its length.
+fn element(at: &str, keys: ElementKeys) -> Result<(Element, [f64; 2], f64), ReadError> {
+    let ElementKeys { kind, length, k, radius } = keys;
+    let length = length.and_then(|length| {
+        length.checked(&at.entry("length"), "a number > 0", |length| length > 0.0)
+    });
+    let (kind, k, radius, length) = match all!(kind, k, radius) {
+        Ok((kind, k, radius)) => (kind, k.map(|x| x.0), radius.map(|x| x.0), length),
+        Err(known) => return length.and(Err(known)),
+    };
+    // A wrong key is told at its place, and a missing one at the element.
+    let wrong = |key: &str, given: bool, message: &str| {
+        let place = if given { at.entry(key) } else { at.into() };
+        Err(ReadError::from(Refusal::at(place, message)))
+    };
+    let made = match (kind.as_str(), k, radius) {
+        ("drift", None, None) => Ok([0.0, 0.0]),
+        ("quadrupole", Some(k), None) => Ok([k, -k]),
+        ("dipole", None, Some(radius)) if radius != 0.0 => Ok([1.0 / (radius * radius), 0.0]),
+        ("drift", k, _) => {
+            let key = if k.is_some() { "k" } else { "radius" };
+            wrong(key, true, "a drift has a length and nothing else")
         }
-        ("drift", ..) => Err("a drift has a length and nothing else".into()),
-        ("quadrupole", ..) => Err("a quadrupole has a length and k".into()),
-        ("dipole", ..) => Err("a dipole has a length and a radius that is not 0".into()),
+        ("quadrupole", _, radius) => {
+            wrong("radius", radius.is_some(), "a quadrupole has a length and k")
+        }
+        ("dipole", Some(_), _) => wrong("k", true, DIPOLE),
+        ("dipole", None, radius) => wrong("radius", radius.is_some(), DIPOLE),
         (other, ..) => {
-            let help = help_for(other, &["drift", "quadrupole", "dipole"]);
-            Err(format!("unknown element `{other}`: {help}"))
+            let refusal = Refusal::unknown("element", other, &["drift", "quadrupole", "dipole"]);
+            Err(refusal.about(at.entry("kind")).into())
         }
-    }
+    };
+    let (strengths, length) = all!(made, length)?;
+    let element = match (k, radius) {
+        (Some(k), _) => Element::Quadrupole { length, k },
+        (None, Some(radius)) => Element::Dipole { length, radius },
+        (None, None) => Element::Drift { length },
+    };
+    Ok((element, strengths, length))
 }
+
+const DIPOLE: &str = "a dipole has a length and a radius that is not 0";
 
 fn read(keys: Keys) -> Result<Forms, ReadError> {
     let (cell, particle) = (keys.elements.and_then(cell), keys.particle);
@@ -83,19 +105,20 @@ type Strengths = Vec<(f64, [f64; 2])>;
 fn cell(keys: Vec<ElementKeys>) -> Result<(Vec<Element>, Strengths), ReadError> {
     let mut mistakes = ReadError::default();
     let (mut elements, mut strengths, mut end) = (Vec::new(), Vec::new(), 0.0);
-    for (i, keys) in keys.iter().enumerate() {
-        let refused = |message| Refusal::at("elements".index(i), message);
-        if let Some((element, strength)) = mistakes.keep(element(keys).map_err(refused)) {
-            end += keys.length.0;
+    if keys.is_empty() {
+        mistakes.add(Refusal::at("elements", "no elements, expected at least one"));
+    }
+    for (i, keys) in keys.into_iter().enumerate() {
+        let made = element(&"elements".index(i), keys);
+        if let Some((element, strength, length)) = mistakes.keep(made) {
+            end += length;
             elements.push(element);
             strengths.push((end, strength));
         }
     }
-    if keys.is_empty() {
-        mistakes.add(Refusal::at("elements", "no elements, expected at least one"));
-    }
     let (elements, strengths) = mistakes.or(Some((elements, strengths)))?;
-    transfer_map(&elements).map_err(|error| Refusal::from(error).about("elements"))?;
+    let not_finite = |_| Refusal::at("elements", "the map of a cell is not finite");
+    transfer_map(&elements).map_err(not_finite)?;
     Ok((elements, strengths))
 }
 

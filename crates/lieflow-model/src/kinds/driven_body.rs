@@ -173,7 +173,7 @@ fn read(mut keys: Keys) -> Result<Forms, ReadError> {
     let names = keys.formula_keys().names("torque", VARIABLES, keys.sample_keys());
     let formulas = |key: &str, texts: Key<Option<Texts>>| -> Result<Option<Formulas>, ReadError> {
         let Some(texts) = texts? else { return Ok(None) };
-        Ok(Some(texts.read(key, 3, seen(&names)?)?.into()))
+        Ok(Some(texts.read_by(key, Some(3), seen(&names))?.into()))
     };
     let Keys { weight, thruster, damping, control, torque, torque_space, .. } = keys;
     let in_the_body = formulas("torque", torque);

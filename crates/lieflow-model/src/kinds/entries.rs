@@ -15,9 +15,9 @@ pub(super) const ROUNDING: f64 = 64.0 * f64::EPSILON;
 ///
 /// # Errors
 /// A refusal of `key` for another shape.
-pub(super) fn square(key: &str, table: &Table, n: usize) -> Result<Mat<f64>, ReadError> {
-    let x = table.matrix(key, Some(n))?;
-    check_rows(key, &x, n)?;
+pub(super) fn square(key: &str, table: &Table, n: Option<usize>) -> Result<Mat<f64>, ReadError> {
+    let x = table.matrix(key, n)?;
+    check_rows(key, &x, x.ncols())?;
     Ok(x)
 }
 
@@ -31,10 +31,7 @@ pub(super) fn symmetric(
     n: Option<usize>,
     tolerance: f64,
 ) -> Result<Mat<f64>, ReadError> {
-    let x = match n {
-        Some(n) => square(key, table, n)?,
-        None => table.matrix(key, None)?,
-    };
+    let x = square(key, table, n)?;
     check_symmetric(key, &x, tolerance)?;
     Ok(symmetric_part(&x))
 }

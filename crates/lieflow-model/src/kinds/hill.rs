@@ -63,13 +63,10 @@ fn read_mathieu(MathieuKeys { a, q, .. }: MathieuKeys) -> Result<Forms, ReadErro
 fn read_hill(keys: HillKeys) -> Result<Forms, ReadError> {
     let a = keys.a.and_then(|a| a.matrix("a", None));
     let symmetry = seen(&a).and_then(|a| Ok(check_symmetric("a", a, entries::ROUNDING)?));
-    let q = keys.q.and_then(|q| symmetric("q", &q, Some(seen(&a)?.nrows()), entries::ROUNDING));
-    let period = keys.period.and_then(|Real(period)| match period > 0.0 {
-        true => Ok(period),
-        false => {
-            Err(Refusal::at("period", format!("period = {period}, expected a number > 0")).into())
-        }
-    });
+    let n = a.as_ref().ok().map(Mat::nrows);
+    let q = keys.q.and_then(|q| symmetric("q", &q, n, entries::ROUNDING));
+    let period =
+        keys.period.and_then(|period| period.checked("period", "a number > 0", |x| x > 0.0));
     let (a, (), q, period) = all!(a, symmetry, q, period)?;
     Ok(Forms::of(Hill { a: symmetric_part(&a), q, period }))
 }

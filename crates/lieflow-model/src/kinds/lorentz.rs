@@ -38,13 +38,15 @@ type Q = Quantity<Particle>;
 
 fn read(keys: Keys) -> Result<Forms, ReadError> {
     let Keys { charge_to_mass, electric, magnetic, velocity, .. } = keys;
-    let (charge_to_mass, electric, magnetic, velocity) =
-        all!(charge_to_mass, electric, magnetic, velocity)?;
+    let start = velocity.and_then(|velocity| {
+        let still = ChargedParticle::new(0.0, |_: f64, _: &Mat<f64>| Default::default())?;
+        let start = still.four_velocity(velocity.0);
+        Ok(start.map_err(|error| Refusal::from(error).about("velocity"))?)
+    });
+    let (charge_to_mass, electric, magnetic, start) =
+        all!(charge_to_mass, electric, magnetic, start)?;
     let (e, b) = (Vector3::from(electric.0), Vector3::from(magnetic.0));
     let particle = ChargedParticle::new(charge_to_mass.0, move |_: f64, _: &Mat<f64>| (e, b))?;
-    let start = particle
-        .four_velocity(velocity.0)
-        .map_err(|error| Refusal::from(error).about("velocity"))?;
     let mut tensor = particle.group().zero();
     particle.f(0.0, &start, &mut tensor, &mut particle.work());
     Ok(Forms::of(Particle { tensor, start }))

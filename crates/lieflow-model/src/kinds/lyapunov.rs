@@ -45,26 +45,36 @@ const DERIVED_MAX: usize = 1 << 18;
 
 fn read(mut keys: Keys) -> Result<Forms, ReadError> {
     let (formulas, samples) = (keys.formula_keys(), keys.sample_keys());
-    let x = keys.x?.values();
-    let n = x.len();
-    if !(1..=MAX).contains(&n) {
-        return Err(Refusal::at(
-            "x",
-            format!("found {}, expected 1 to {MAX}", amount(n, "numbers")),
-        )
-        .into());
-    }
-    let variables = keys.variables?.unwrap_or_else(|| numbered("x", n));
-    if variables.len() != n {
-        let message =
-            format!("found {}, expected {n} as x has numbers", amount(variables.len(), "names"));
-        return Err(Refusal::at("variables", message).into());
-    }
-    let names = ["t".into()].into_iter().chain(variables);
-    let names = formulas.names("variables", names, samples);
-    let field = keys.field.and_then(|field| field.read("field", n, seen(&names)?));
+    let x = keys.x.and_then(|x| match x.values() {
+        x if (1..=MAX).contains(&x.len()) => Ok(x),
+        x => {
+            let message = format!("found {}, expected 1 to {MAX}", amount(x.len(), "numbers"));
+            Err(Refusal::at("x", message).into())
+        }
+    });
+    // The names are known also where x is wrong.
+    let variables = keys.variables.and_then(|variables| {
+        let variables = match variables {
+            Some(variables) => variables,
+            None => numbered("x", seen(&x)?.len()),
+        };
+        match &x {
+            Ok(x) if variables.len() != x.len() => {
+                let (found, n) = (amount(variables.len(), "names"), x.len());
+                let message = format!("found {found}, expected {n} as x has numbers");
+                Err(Refusal::at("variables", message).into())
+            }
+            _ => Ok(variables),
+        }
+    });
+    let count = seen(&x).map(Vec::len).or(seen(&variables).map(Vec::len));
+    let names = variables.and_then(|variables| {
+        formulas.names("variables", ["t".into()].into_iter().chain(variables), samples)
+    });
+    let field = keys.field.and_then(|field| field.read_by("field", count.ok(), seen(&names)));
     let names = names.and_then(Names::checked);
-    let (names, field) = all!(names, field)?;
+    let (x, names, field) = all!(x, names, field)?;
+    let n = x.len();
     let derived = |f: &Formula| f.operations() * (1..=n).filter(|&j| f.uses(j)).count();
     if field.iter().map(derived).sum::<usize>() > DERIVED_MAX {
         let message = format!("its derivatives take more than {DERIVED_MAX} operations");

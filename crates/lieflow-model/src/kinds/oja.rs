@@ -37,14 +37,24 @@ const DEPENDENT: f64 = 1e-8;
 
 fn read(keys: Keys) -> Result<Forms, ReadError> {
     let a = keys.a.and_then(|a| symmetric("a", &a, None, ROUNDING));
-    let x = keys.x.and_then(|x| x.columns("x"));
+    let x = keys.x.and_then(|x| {
+        let x = x.columns("x")?;
+        if let Ok(a) = &a {
+            check_rows("x", &x, a.nrows())?;
+        }
+        orthonormal(&x)
+    });
     let (a, x) = all!(a, x)?;
-    check_rows("x", &x, a.nrows())?;
+    let flow = Oja::new(a.clone(), x.ncols())?;
+    Ok(Forms::of(OjaFlow { flow, a, x }))
+}
+
+/// The orthonormal columns of the factor Q of independent columns.
+fn orthonormal(x: &Mat<f64>) -> Result<Mat<f64>, ReadError> {
     if x.ncols() > x.nrows() {
         let message = format!("{} columns of {} rows depend on each other", x.ncols(), x.nrows());
         return Err(Refusal::at("x", message).into());
     }
-    let flow = Oja::new(a.clone(), x.ncols())?;
     let (q, r) = qr(x.as_ref());
     let depends = |j: &usize| r[(*j, *j)].abs() <= DEPENDENT * norm(x.subcols(*j, 1));
     if let Some(j) = (0..x.ncols()).find(depends) {
@@ -54,8 +64,7 @@ fn read(keys: Keys) -> Result<Forms, ReadError> {
         );
         return Err(Refusal::at("x", message).into());
     }
-    let x = Mat::from_fn(x.nrows(), x.ncols(), |i, j| q[(i, j)] * r[(j, j)].signum());
-    Ok(Forms::of(OjaFlow { flow, a, x }))
+    Ok(Mat::from_fn(x.nrows(), x.ncols(), |i, j| q[(i, j)] * r[(j, j)].signum()))
 }
 
 impl System for OjaFlow {

@@ -38,10 +38,14 @@ type Q = Quantity<Pendulum>;
 fn read(keys: Keys) -> Result<Forms, ReadError> {
     let Keys { gravity_over_length, direction, velocity, .. } = keys;
     let pendulum = gravity_over_length.and_then(|x| Ok((SphericalPendulum::new(x.0)?, x.0)));
+    let refused = |error| Refusal::from(error).about("direction");
+    let direction = direction.and_then(|direction| {
+        // Any pendulum refuses what is no direction.
+        SphericalPendulum::new(0.0)?.state(direction.0, [0.0; 3]).map_err(refused)?;
+        Ok(direction)
+    });
     let ((pendulum, rate2), direction, velocity) = all!(pendulum, direction, velocity)?;
-    let start = pendulum
-        .state(direction.0, velocity.0)
-        .map_err(|error| Refusal::from(error).about("direction"))?;
+    let start = pendulum.state(direction.0, velocity.0).map_err(refused)?;
     Ok(Forms::of(Pendulum { pendulum, rate2, start }))
 }
 

@@ -42,13 +42,14 @@ struct Riccati {
 type Q = Quantity<Riccati>;
 
 fn read(keys: Keys) -> Result<Forms, ReadError> {
-    let p = keys.p?.matrix("p", None)?;
-    let m = p.nrows();
-    let of_p = |key, table: Key<Table>| table.and_then(|x| symmetric(key, &x, Some(m), ROUNDING));
+    let p = keys.p.and_then(|p| p.matrix("p", None));
+    let m = p.as_ref().ok().map(Mat::nrows);
+    let of_p = |key, table: Key<Table>| table.and_then(|x| symmetric(key, &x, m, ROUNDING));
     let (c, b) = (of_p("c", keys.c), of_p("b", keys.b));
-    let d = keys.d.and_then(|d| d.map_or(Ok(Mat::zeros(m, m)), |d| square("d", &d, m)));
-    let start = check_symmetric("p", &p, ROUNDING);
-    let (c, d, b, ()) = all!(c, d, b, start)?;
+    let d = keys.d.and_then(|d| d.map(|d| square("d", &d, m)).transpose());
+    let start = seen(&p).and_then(|p| Ok(check_symmetric("p", p, ROUNDING)?));
+    let (c, d, b, p, ()) = all!(c, d, b, p, start)?;
+    let d = d.unwrap_or_else(|| Mat::zeros(p.nrows(), p.nrows()));
     Ok(Forms::of(Riccati { c, d, b, p: symmetric_part(&p) }))
 }
 

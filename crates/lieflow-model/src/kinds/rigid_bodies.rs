@@ -27,8 +27,8 @@ keys! { Keys {
 
 read_by_keys! {
     struct BodyKeys {
-        inertia: Reals<3>,
-        momentum_body: Reals<3>,
+        inertia: Key<Reals<3>>,
+        momentum_body: Key<Reals<3>>,
     }
 }
 
@@ -49,15 +49,21 @@ fn read(Keys { bodies: keys, .. }: Keys) -> Result<Forms, ReadError> {
     if keys.is_empty() {
         return Err(Refusal::at("bodies", "no bodies, expected at least one").into());
     }
-    let inertia: Vec<_> = keys.iter().map(|keys| keys.inertia.0).collect();
     let mut mistakes = ReadError::default();
-    let bodies = inertia.iter().enumerate().filter_map(|(i, inertia)| {
-        let refused = |error| Refusal::from(error).about("bodies".index(i));
-        mistakes.keep(RigidBody::new(*inertia).map_err(refused))
-    });
-    let bodies = bodies.collect();
-    let bodies = mistakes.or(Some(bodies))?;
-    let start = keys.iter().map(|keys| keys.momentum_body.0.into()).collect();
+    let (mut bodies, mut inertia, mut start) = (Vec::new(), Vec::new(), Vec::new());
+    for (i, BodyKeys { inertia: moments, momentum_body }) in keys.into_iter().enumerate() {
+        let body = moments.and_then(|Reals(moments)| {
+            let refused = |error| Refusal::in_table(&"bodies".index(i), error);
+            Ok((RigidBody::new(moments).map_err(refused)?, moments))
+        });
+        if let Some(((body, moments), Reals(m))) = mistakes.keep(all!(body, momentum_body)) {
+            bodies.push(body);
+            inertia.push(moments);
+            start.push(m.into());
+        }
+    }
+    mistakes.or(Some(()))?;
+    let start = start.into();
     Ok(Forms::of(Bodies { bodies, inertia, start }))
 }
 

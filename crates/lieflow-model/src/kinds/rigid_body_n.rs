@@ -62,10 +62,17 @@ fn body(
     n: Result<usize, ReadError>,
 ) -> Result<(RigidBodyN, Option<Vec<f64>>), ReadError> {
     let which = exactly_one(("mass_moments", mass_moments?), ("inertia", inertia?))?;
-    let n = n?;
     match which {
         Either::First(lambda) => {
             let lambda = lambda.values();
+            let wrong = |&(i, j): &(usize, usize)| lambda[i] + lambda[j] <= 0.0;
+            if let Some((i, j)) = above_diagonal(lambda.len()).find(wrong) {
+                let [first, second] = [i, j].map(|i| "mass_moments".index(i));
+                let sum = lambda[i] + lambda[j];
+                let message = format!("{first} + {second} = {sum}, expected a number > 0");
+                return Err(Refusal::at(second, message).into());
+            }
+            let n = n?;
             if lambda.len() != n {
                 let message = format!(
                     "found {}, expected {n}, as the momentum has {n}·{}/2 numbers",
@@ -74,15 +81,9 @@ fn body(
                 );
                 return Err(Refusal::at("mass_moments", message).into());
             }
-            if let Some((i, j)) = above_diagonal(n).find(|&(i, j)| lambda[i] + lambda[j] <= 0.0) {
-                let [first, second] = [i, j].map(|i| "mass_moments".index(i));
-                let sum = lambda[i] + lambda[j];
-                let message = format!("{first} + {second} = {sum}, expected a number > 0");
-                return Err(Refusal::at(second, message).into());
-            }
             Ok((RigidBodyN::manakov(&lambda)?, Some(lambda)))
         }
-        Either::Second(inertia) => Ok((RigidBodyN::from_pairs(n, &inertia.values())?, None)),
+        Either::Second(inertia) => Ok((RigidBodyN::from_pairs(n?, &inertia.values())?, None)),
     }
 }
 

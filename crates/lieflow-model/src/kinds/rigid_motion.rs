@@ -72,7 +72,7 @@ type Q = Quantity<Motion>;
 
 fn read(mut keys: Keys) -> Result<Forms, ReadError> {
     let names = keys.formula_keys().names("omega", VARIABLES, keys.sample_keys());
-    let formulas = |key: &str, texts: Key<Texts>| texts?.read(key, 3, seen(&names)?);
+    let formulas = |key: &str, texts: Key<Texts>| texts?.read_by(key, Some(3), seen(&names));
     let Keys { omega, velocity, frame, attitude, position, .. } = keys;
     let (omega, velocity) = (formulas("omega", omega), formulas("velocity", velocity));
     let names = names.and_then(Names::checked);

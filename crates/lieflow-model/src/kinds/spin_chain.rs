@@ -110,17 +110,22 @@ fn read(mut keys: Keys) -> Result<Forms, ReadError> {
     });
     let names = formulas.names("field", VARIABLES, samples);
     let of = |key: &str, stated: Key<Option<Texts>>, alone| {
-        read_three(key, stated?.as_ref(), alone, seen(&names)?)
+        read_three(key, stated?.as_ref(), alone, seen(&names))
     };
     let exchange = of("exchange", keys.exchange, Alone::All(1.0));
     let dm = of("dm", keys.dm, Alone::Refused);
     let anisotropy = of("anisotropy", keys.anisotropy, Alone::Third);
     let field = of("field", keys.field, Alone::Refused);
     let names = names.and_then(Names::checked);
-    let Keys { ring, damping, .. } = keys;
+    let (ring, damping) = (
+        keys.ring,
+        keys.damping.and_then(|damping| {
+            let damping = damping.unwrap_or(Real(0.0));
+            damping.checked("damping", "a finite number ≥ 0", |x| x >= 0.0)
+        }),
+    );
     let ((chain, start), _, exchange, dm, anisotropy, field, ring, damping) =
         all!(spins, names, exchange, dm, anisotropy, field, ring, damping)?;
-    let damping = damping.map_or(0.0, |x| x.0);
     let chain = chain.with_damping(damping)?;
     let ring = ring != Some(false);
     let stated = Stated::new([exchange, dm, anisotropy, field], start.len(), ring);
@@ -157,8 +162,15 @@ fn read_three(
     key: &str,
     stated: Option<&Texts>,
     alone: Alone,
-    names: &Names,
+    names: Result<&Names, ReadError>,
 ) -> Result<[Formula; 3], ReadError> {
+    let (names, stated) = match (names, stated) {
+        (Ok(names), stated) => (names, stated),
+        (names, Some(texts @ Texts::List(_))) => {
+            return Err(texts.read_by(key, Some(3), names).err().unwrap_or_default());
+        }
+        (Err(error), _) => return Err(error),
+    };
     let number = |x: f64| Formula::read(key, &format!("{x:?}"), names);
     let all = |formula: Formula| [formula.clone(), formula.clone(), formula];
     match (stated, alone) {

@@ -3,6 +3,8 @@
 //! `keys! { Keys { … } }` states the keys of a kind. `keys! { Keys [formula_keys] { … } }` has those of a group too,
 //! and a method that takes them out, `formula_keys()`. A dimension may follow the type: `inertia: Reals<3> [INERTIA] = …`.
 
+use lieflow::samples::Interpolation;
+
 use super::kind::{KeyInfo, Kind, ReadForms};
 use super::quantity::Quantity;
 use super::system::System;
@@ -166,8 +168,10 @@ impl FormulaKeys {
     ) -> Result<Names, ReadError> {
         let parameters = seen(&self.parameters);
         let names = parameters.and_then(|parameters| parameters.names(key, variables));
+        let interpolation = interpolation
+            .and_then(|name| Ok(name.as_deref().map(Interpolation::named).transpose()?));
         let (names, samples, interpolation) = all!(names, samples, interpolation)?;
-        let names = names.with_samples(samples, interpolation.as_deref())?;
+        let names = names.with_samples(samples, interpolation)?;
         Ok(names.with_lets("let", seen(&self.r#let)?))
     }
 }

@@ -8,7 +8,7 @@ pub mod values;
 
 pub use read::{Key, Mistake, Read, ReadError, Shape, Value};
 pub(crate) use read::{
-    KeyReader, all, entry_of, given_key, key_name, read_as_held, read_by_keys, read_whole,
+    KeyReader, all, entry_of, given, given_key, key_name, read_as_held, read_by_keys, read_whole,
     read_with, seen, take,
 };
 pub(crate) use refusal::amount;

@@ -280,6 +280,11 @@ pub(crate) fn seen<T, E>(value: &Result<T, E>) -> Result<&T, ReadError> {
     value.as_ref().map_err(|_| ReadError::known())
 }
 
+/// Does a key have a value, be it wrong?
+pub(crate) fn given<T>(key: &Key<Option<T>>) -> bool {
+    !matches!(key, Ok(None))
+}
+
 /// Takes the value of a key out.
 pub(crate) fn take<T>(key: &mut Key<T>) -> Key<T> {
     core::mem::replace(key, Err(ReadError::known()))

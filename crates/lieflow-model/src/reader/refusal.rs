@@ -1,6 +1,7 @@
 //! What is wrong with a value, as data: its key, a message and what to do.
 
 use lieflow::Error;
+use lieflow::error::Plain;
 
 use super::suggest::help_for;
 
@@ -43,6 +44,21 @@ impl Refusal {
     /// Makes the refusal about another key.
     pub fn about(self, key: impl Into<String>) -> Self {
         Refusal { key: Some(key.into()), ..self }
+    }
+
+    /// A number that lies outside its range.
+    pub(crate) fn out_of_range(key: &str, value: f64, expected: &str) -> Self {
+        Refusal::at(key, format!("{key} = {}, expected {expected}", Plain(&value)))
+    }
+
+    /// The refusal of an argument of the library that is a key of this table.
+    pub fn in_table(table: &str, error: Error) -> Self {
+        match error {
+            Error::OutOfRange { arg, value, expected } => {
+                Refusal::out_of_range(&table.entry(&path_of(&arg)), value, &expected)
+            }
+            other => Refusal::from(other).about(table),
+        }
     }
 
     /// Something about a section as a whole.

@@ -7,6 +7,7 @@ use super::read::{Read, ReadError, Shape, Value, read_as_held};
 use super::{KeyPath, Refusal, amount};
 
 const OUT_OF_RANGE: &str = "the number is out of range";
+const NO_ROWS: &str = "found no rows, expected at least one";
 
 /// A finite number; an integer is one too.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,6 +20,24 @@ impl Read for Real {
         match number(value)? {
             x if x.is_finite() => Ok(Real(x)),
             _ => Err(ReadError::expected(value, "a finite number")),
+        }
+    }
+}
+
+impl Real {
+    /// The number, where it is a good one.
+    ///
+    /// # Errors
+    /// A refusal of `key`, with what was expected.
+    pub fn checked(
+        self,
+        key: &str,
+        expected: &str,
+        good: impl FnOnce(f64) -> bool,
+    ) -> Result<f64, ReadError> {
+        match self.0 {
+            x if good(x) => Ok(x),
+            x => Err(Refusal::out_of_range(key, x, expected).into()),
         }
     }
 }
@@ -217,7 +236,7 @@ impl Numbers {
     pub fn square(self, key: &str) -> Result<Mat<f64>, ReadError> {
         match self {
             Numbers::Rows(table) => table.matrix(key, None),
-            Numbers::List(list) if list.is_empty() => Table(Vec::new()).matrix(key, None),
+            Numbers::List(list) if list.is_empty() => Err(Refusal::at(key, NO_ROWS).into()),
             Numbers::List(_) => {
                 Err(Refusal::at(key, "found numbers, expected rows of numbers").into())
             }
@@ -225,7 +244,18 @@ impl Numbers {
     }
 }
 
-read_as_held!(List: Vec<Real> = Shape::List, Table: Vec<List> = Shape::Rows);
+read_as_held!(List: Vec<Real> = Shape::List);
+
+impl Read for Table {
+    const SHAPE: Shape = Shape::Rows;
+
+    fn read(value: &Value<'_>) -> Result<Self, ReadError> {
+        match Vec::read(value)? {
+            rows if rows.is_empty() => Err(ReadError::of(value, NO_ROWS)),
+            rows => Ok(Table(rows)),
+        }
+    }
+}
 
 /// Any number of numbers.
 #[derive(Clone, Debug, PartialEq)]
@@ -238,7 +268,7 @@ impl List {
     }
 }
 
-/// Rows of numbers, of one length.
+/// Rows of numbers, of one length; at least one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table(Vec<List>);
 
@@ -259,12 +289,9 @@ impl Table {
     /// The rows as a matrix of `columns` columns. `None` means as many columns as rows.
     ///
     /// # Errors
-    /// A refusal of `key` for a row of another length, and for no rows.
+    /// A refusal of `key` for a row of another length.
     pub fn matrix(&self, key: &str, columns: Option<usize>) -> Result<Mat<f64>, ReadError> {
         let columns = columns.unwrap_or(self.0.len());
-        if self.0.is_empty() {
-            return Err(Refusal::at(key, "found no rows, expected at least one").into());
-        }
         if let Some(i) = self.0.iter().position(|row| row.0.len() != columns) {
             let found = self.0[i].0.len();
             let message =

@@ -172,11 +172,30 @@ type Fixed = Either<f64, u64>;
 /// The steps that `compare` starts from where a scene leaves them to the error.
 const STEPS: u64 = 1000;
 
+/// What is expected of a step.
+const POSITIVE: &str = "a finite number > 0";
+
 /// The rules of tolerances.
 const PER_STEP: &str = "per-step";
 const PER_LENGTH: &str = "per-length";
 
+/// A span that does not end at its start.
+fn not_empty(Span([t0, t1]): Span) -> Result<[f64; 2], ReadError> {
+    match t0 == t1 {
+        false => Ok([t0, t1]),
+        true => {
+            let message = format!("t_span is empty: it starts and ends at t = {t0}");
+            Err(Refusal::at("t_span", message).into())
+        }
+    }
+}
+
 impl TimeKeys {
+    /// The span, where it can be used; also beside steps that cannot.
+    pub(super) fn t_span(&self) -> Option<[f64; 2]> {
+        self.t_span.as_ref().ok().and_then(|span| not_empty(*span).ok())
+    }
+
     /// The times of a run.
     ///
     /// # Errors
@@ -185,13 +204,7 @@ impl TimeKeys {
         let fixed = self.fixed();
         let limits = seen(&fixed).and_then(|fixed| self.limits(fixed.is_some()));
         let TimeKeys { t_span, at_knots, .. } = self;
-        let t_span = t_span.and_then(|Span([t0, t1])| match t0 == t1 {
-            false => Ok([t0, t1]),
-            true => {
-                let message = format!("t_span is empty: it starts and ends at t = {t0}");
-                Err(Refusal::at("t_span", message).into())
-            }
-        });
+        let t_span = t_span.and_then(not_empty);
         let control = match (seen(&fixed), seen(&limits)) {
             (Ok(fixed), Ok(limits)) => limits.chosen_by_error(fixed.as_ref()),
             _ => Err(ReadError::known()),
@@ -213,19 +226,22 @@ impl TimeKeys {
         let (dt, steps) = (*seen(&self.dt)?, *seen(&self.steps)?);
         at_most_one([("dt", dt.is_some()), ("steps", steps.is_some())])?;
         match dt {
-            Some(Real(dt)) if dt <= 0.0 => {
-                let expected = "a finite number > 0".into();
-                Err(Error::OutOfRange { arg: "dt".into(), value: dt, expected }.into())
-            }
-            Some(Real(dt)) => Ok(Some(Either::First(dt))),
+            Some(dt) => Ok(Some(Either::First(dt.checked("dt", POSITIVE, |dt| dt > 0.0)?))),
             None => Ok(steps.map(|steps| Either::Second(steps.0))),
         }
     }
 
     fn limits(&self, is_fixed: bool) -> Result<Limits, ReadError> {
-        let number = |key: &Key<Option<Real>>| Ok::<_, ReadError>(seen(key)?.map(|x| x.0));
-        let [rtol, atol] = [&self.rtol, &self.atol].map(number);
-        let [h_init, h_min, h_max] = [&self.h_init, &self.h_min, &self.h_max].map(number);
+        let tolerance = |key, x: &Key<Option<Real>>| {
+            let x = seen(x)?.map(|x| x.checked(key, "a finite number ≥ 0", |x| x >= 0.0));
+            x.transpose()
+        };
+        let (rtol, atol) = (tolerance("rtol", &self.rtol), tolerance("atol", &self.atol));
+        let size = |key, h: &Key<Option<Real>>| {
+            seen(h)?.map(|h| h.checked(key, POSITIVE, |h| h > 0.0)).transpose()
+        };
+        let h_init = size("h_init", &self.h_init);
+        let (h_min, h_max) = (size("h_min", &self.h_min), size("h_max", &self.h_max));
         let max_steps = seen(&self.max_steps).map(|n| n.map(|n| n.0));
         let rule = seen(&self.tolerance).and_then(|rule| match rule.as_deref() {
             None => Ok(None),
@@ -447,6 +463,9 @@ impl OutputKeys {
         }
         let (every, times) = (*seen(&self.every)?, seen(&self.times)?);
         let (count, interval) = (*seen(&self.count)?, *seen(&self.interval)?);
+        if let Some(interval) = interval {
+            interval.checked("interval", POSITIVE, |length| length > 0.0)?;
+        }
         at_most_one([
             ("every", every.is_some()),
             ("times", times.is_some()),

@@ -116,16 +116,16 @@ impl Scene {
 
         let times = finder.keep("time", document.section("time"));
         let times = times.and_then(|section| finder.read::<TimeKeys>("time", section));
+        let t_span = times.as_ref().and_then(TimeKeys::t_span);
         let times = times.and_then(|times| finder.keep("time", times.resolve()));
         let steps_left = times.as_ref().is_some_and(|times| times.limits.is_left);
         let at_knots = times.as_ref().zip(spec).and_then(|(times, problem)| {
             finder.keep("time", times.at_knots(problem.knots([0.0, 0.0]).is_some()))
         });
-        let grid = times.as_ref().map(|times| times.grid);
-        if let (Some(grid), Some(problem)) = (grid, spec) {
+        if let (Some(t_span), Some(problem)) = (t_span, spec) {
             // Beyond its samples a formula has no value.
-            let covered = finder.keep("time", covered(problem, grid.t_span()));
-            let without_value = covered.map(|()| problem.check_start(grid.t_span()[0]));
+            let covered = finder.keep("time", covered(problem, t_span));
+            let without_value = covered.map(|()| problem.check_start(t_span[0]));
             finder.refuse("problem", without_value.unwrap_or_default());
         }
 
@@ -142,9 +142,9 @@ impl Scene {
             rows: output.as_ref().is_some_and(OutputKeys::leaves_rows),
         };
         let asked = asked.or_else(|| spec.map(defaults::quantities)).unwrap_or_default();
-        let rows = output.as_ref().and_then(|output| {
-            finder.keep("output", output.rows(grid.map(|grid| grid.t_span()), steps_left))
-        });
+        let rows = output
+            .as_ref()
+            .and_then(|output| finder.keep("output", output.rows(t_span, steps_left)));
 
         let mut columns = spec.and_then(|problem| {
             let named = FormulaKeys {
@@ -167,8 +167,8 @@ impl Scene {
 
         let events = finder.keep("events", document.entries("events"));
         let events = events.and_then(|entries| read_events(&mut finder, entries, columns.as_ref()));
-        if let (Some(grid), Some(events)) = (grid, &events)
-            && !grid.t_span()[1].is_finite()
+        if let (Some(t_span), Some(events)) = (t_span, &events)
+            && !t_span[1].is_finite()
             && events.iter().all(|event| event.stop_after.is_none())
         {
             let message =

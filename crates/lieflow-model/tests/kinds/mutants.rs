@@ -113,3 +113,91 @@ fn every_value_may_be_another() {
     assert!(several.is_empty(), "{} of {refused}\n{}", several.len(), several.join("\n"));
     assert!(refused * 4 > tried, "{refused} of {tried}");
 }
+
+/// Values that are wrong for most keys.
+const WRONG: [&str; 5] = ["-1", "0", "1e308", "nan", "\"?\""];
+
+/// The place of the first number, or else of the first text, of the value of a key in a line.
+fn value_in(line: &str) -> Option<core::ops::Range<usize>> {
+    let start = line.find(" = ")? + 3;
+    let value = &line[start..line.find(" #").unwrap_or(line.len()).max(start)];
+    let digit = value.find(|c: char| c.is_ascii_digit());
+    if let Some(mut first) = digit.filter(|&at| !value[..at].contains('"')) {
+        first -= usize::from(value[..first].ends_with('-'));
+        let number = |c: char| c.is_ascii_digit() || "+-._e".contains(c);
+        let length = value[first..].find(|c| !number(c)).unwrap_or(value.len() - first);
+        return Some(start + first..start + first + length);
+    }
+    let quote = value.find('"')?;
+    Some(start + quote..start + quote + 2 + value[quote + 1..].find('"')?)
+}
+
+/// The lines of the mistakes of a scene.
+fn lines_of(name: &str, text: &str) -> Vec<usize> {
+    let Err(error) = Scene::parse(name, text) else { return Vec::new() };
+    let message = error.to_string();
+    let places = message.lines().filter_map(|line| line.strip_prefix(name)?.strip_prefix(':'));
+    places.filter_map(|place| place.split(':').next()?.parse().ok()).collect()
+}
+
+/// Keys whose value can be judged only with that of others: those, or none for the whole problem.
+const NEEDS: &[(&str, &[&str])] = &[
+    ("plot", &[]),
+    ("when", &[]),
+    ("times", &["t_span"]),
+    ("t_span", &["samples", "interpolation", "name", "space"]),
+    ("interpolation", &["name", "space"]),
+    ("name", &["name", "space", "start"]),
+    ("start", &["space"]),
+    ("hamiltonian", &["algebra"]),
+    ("momentum", &["algebra"]),
+    ("amplitudes", &["energies"]),
+    ("positions", &["momenta"]),
+    ("jets", &["n", "surface"]),
+    ("modes", &["n", "surface"]),
+    ("{ latitude", &["n", "surface"]),
+];
+
+/// Can the value of a key be judged only with that of another one?
+fn needs(key: &str, other: &str) -> bool {
+    let of_key = NEEDS.iter().find(|(name, _)| *name == key);
+    other == "kind"
+        || of_key.is_some_and(|(_, others)| others.is_empty() || others.contains(&other))
+}
+
+/// Two wrong values in different lines of a scene are told together.
+#[test]
+fn two_wrong_values_are_told_together() {
+    let (mut pairs, mut lost) = (0, std::collections::BTreeSet::new());
+    for scene in BUNDLED {
+        let lines: Vec<&str> = scene.text.lines().collect();
+        let with = |changes: &[&(usize, String)]| {
+            let mut lines = lines.clone();
+            changes.iter().for_each(|(i, line)| lines[*i] = line);
+            lines_of(scene.name, &lines.join("\n"))
+        };
+        let mut wrong = Vec::new();
+        for (i, line) in lines.iter().enumerate().filter(|(_, line)| !line.starts_with('#')) {
+            let Some(place) = value_in(line) else { continue };
+            let changed =
+                WRONG.map(|x| format!("{}{x}{}", &line[..place.start], &line[place.end..]));
+            let of_line =
+                changed.map(|line| (i, line)).into_iter().filter(|one| with(&[one]) == [i + 1]);
+            wrong.extend(of_line);
+        }
+        for (k, one) in wrong.iter().enumerate() {
+            for other in wrong[k..].iter().filter(|other| other.0 > one.0) {
+                pairs += 1;
+                let told = with(&[one, other]);
+                let key = |i: usize| lines[i].split(" = ").next().unwrap_or_default().trim();
+                for (mine, its) in [(one.0, other.0), (other.0, one.0)] {
+                    if !told.contains(&(mine + 1)) && !needs(key(mine), key(its)) {
+                        lost.insert((scene.name, key(mine), key(its)));
+                    }
+                }
+            }
+        }
+    }
+    println!("{pairs} pairs");
+    assert!(pairs > 2000 && lost.is_empty(), "{pairs} pairs, {lost:#?}");
+}

@@ -148,7 +148,46 @@ const BROKEN: &[(&str, &str, &str)] = &[
     ("general-top", "[\"vertical\", ", "[\"integral\", "),
     ("spin-pair", "\"lengths\"]", "\"defects\"]"),
     ("cubic-anisotropy", "quantities = [", "quantities = [\"group\", "),
+    ("asymmetric-top", "inertia = [1.0, 2.0, 3.0]", "inertia = [1.0, 2.0, 3.0"),
+    ("spin-pair", "parameters = { K", "parameters = { deg = 1, K"),
+    ("flipping-book", "sides = [0.2,", "sides = [1e308,"),
+    ("toda-lattice", "t_span = [0.0, 20.0]", "t_span = [0.0, 20.0"),
 ];
+
+/// A line of a bundled scene, what stands there instead, and what stands at the place of the mistake.
+const PLACES: &[(&str, &str, &str, &str)] = &[
+    ("fodo-cell", "length = 0.25 }", "length = -0.25 }", "-0.25"),
+    ("fodo-cell", "radius = 8.0", "radius = 0", "0 }"),
+    ("fodo-cell", "\"dipole\", length", "\"dipole\", k = 1, length", "1, length"),
+    ("fodo-cell", "\"dipole\"", "\"dipol\"", "\"dipol\""),
+    ("fodo-cell", "length = 0.25 },", "length = 0.25,", "{ kind = \"drift\", length = 0.25,\n"),
+    ("fodo-cell", "  { kind = \"drift\", length = 0.25 },\n]", "", "[\n  { kind = \"quadrupole\""),
+    ("spin-pair", "parameters = { K", "parameters = { deg = 1, K", "deg"),
+    ("asymmetric-top", "2.0, 3.0]", "2.0, 3.0", "[1.0, 2.0, 3.0"),
+    ("asymmetric-top", "2.0, 3.0]", "2.0, 3.0,", "[1.0, 2.0, 3.0"),
+    ("sorting", "order = [", "order = [ # \"] ", "[ # \"]"),
+    ("vortices-on-sphere", "longitude = -0.6", "longitude = 57.3", "57.3"),
+    ("many-bodies", "inertia = [1.0, 1.0, 2.0]", "inertia = [1, 0, 2]", "0, 2]"),
+    ("flipping-book", "sides = [0.2, 0.15,", "sides = [0.2, -1,", "-1,"),
+];
+
+#[test]
+fn a_mistake_has_the_place_of_its_key() {
+    for (name, line, instead, at) in PLACES {
+        let text = bundled(name);
+        assert!(text.contains(line), "{name} has no {line}");
+        let text = text.replacen(line, instead, 1);
+        let before = &text[..text.find(at).unwrap_or_else(|| panic!("{name}: no {at}"))];
+        let start = before.rfind('\n').map_or(0, |end| end + 1);
+        let (line, column) =
+            (1 + before.matches('\n').count(), 1 + before[start..].chars().count());
+        let message = message_of(name, &text).to_string();
+        assert!(
+            message.starts_with(&format!("{name}:{line}:{column}: ")),
+            "{line}:{column} {message}"
+        );
+    }
+}
 
 /// What is said of a scene.
 fn message_of(name: &str, text: &str) -> SceneError {
@@ -277,6 +316,14 @@ fn all_values_at_once() {
         message.contains(": 2 mistakes") && message.contains("\"fast\" is not a number"),
         "{message}"
     );
+    // Each value of a table in a list, also beside one of another type.
+    let line =
+        bundled("fodo-cell").replace("length = 0.25", "length = 0").replacen("1.2", "\"a\"", 1);
+    let message = Scene::parse("scene", &line.replace("8.0", "0")).unwrap_err().to_string();
+    assert!(message.contains(": 7 mistakes"), "{message}");
+    let tolerances = "rtol = -1\natol = -1\nh_min = 0\nh_max = -1\n";
+    let expected = ["7:8: rtol = -1", "8:8: atol = -1", "9:9: h_min = 0", "10:9: h_max = -1"];
+    as_expected(&told(&format!("{good}[time]\nt_span = [0, 1]\n{tolerances}")), &expected);
     // Each entry of a list that is no table is told, and not the keys that it cannot have.
     let bodies =
         "[problem]\nkind = \"rigid-bodies\"\nbodies = [1, {}, [2, 3]]\n[time]\nt_span = [0, 1]\n";

@@ -36,7 +36,7 @@ keys! { Keys [sample_keys formula_keys] {
          of NAME1, NAME2, …, a single one NAME. Field is a list of formulas, or one whose value is a vector, in t, \
          the coordinates of all parts and the parameters: the angular velocity, in space, of a vector and of a rotation, the \
          derivatives of numbers",
-    invariants: BTreeMap<String, Text> =
+    invariants: BTreeMap<String, Key<Text>> =
         "formulas by name, in the coordinates and the parameters, that the motion keeps; optional",
 } }
 
@@ -74,31 +74,38 @@ fn read(mut keys: Keys) -> Result<Forms, ReadError> {
     }
     let (mut notes, mut mistakes) = (Vec::new(), ReadError::default());
     let (spaces, start) = places(&keys, &mut notes, &mut mistakes);
-    // The formulas are read also where a start is wrong, and not without the names of all coordinates.
-    let names = spaces.as_ref().ok_or_else(ReadError::known).and_then(|spaces| {
-        let (coordinates, taken) = names_of(&keys, spaces, seen(&formulas.parameters)?)?;
+    // The formulas are read also where a start is wrong. Without the names of all coordinates their form is checked.
+    let all_spaces = spaces.iter().map(Option::as_ref).collect::<Option<Vec<_>>>();
+    let names = all_spaces.ok_or_else(ReadError::known).and_then(|spaces| {
+        let (coordinates, taken) = names_of(&keys, &spaces, seen(&formulas.parameters)?)?;
         let all = core::iter::once(TIME).chain(coordinates.iter().map(String::as_str));
         let of_fields = formulas.names("parts", all, samples)?;
         let of_invariants = seen(&formulas.parameters)?.names("parts", &coordinates)?;
         let of_invariants = of_invariants.with_usable_lets("let", seen(&formulas.r#let)?);
         Ok((taken, of_fields, of_invariants))
     });
-    let (taken, of_fields, of_invariants) = match names {
-        Ok(names) => names,
-        Err(error) => {
-            mistakes.add(error);
-            return mistakes.or(None);
-        }
-    };
     let mut parts = Vec::new();
-    for (i, (keys, space)) in keys.into_iter().zip(spaces.into_iter().flatten()).enumerate() {
-        let field = keys.field.and_then(|f| f.read(&of_part(i, "field"), space.dim(), &of_fields));
-        if let (Some(field), Ok(name)) = (mistakes.keep(field), keys.name) {
+    for (i, (keys, space)) in keys.into_iter().zip(spaces).enumerate() {
+        let count = space.as_ref().map(Space::dim);
+        let of_fields = seen(&names).map(|(_, of_fields, _)| of_fields);
+        let field = keys.field.and_then(|f| f.read_by(&of_part(i, "field"), count, of_fields));
+        if let (Some(field), Some(space), Ok(name)) = (mistakes.keep(field), space, keys.name) {
             parts.push(Part { name, space, field });
         }
     }
-    mistakes.keep(of_fields.checked());
-    let kept = invariants.and_then(|kept| read_invariants(kept, taken, &of_invariants));
+    let kept = match mistakes.keep(names) {
+        Some((taken, of_fields, of_invariants)) => {
+            mistakes.keep(of_fields.checked());
+            invariants.and_then(|kept| read_invariants(kept, taken, &of_invariants))
+        }
+        None => {
+            for (name, text) in invariants.iter().flatten() {
+                let form = |text: &Text| Formula::check_form(&"invariants".entry(name), &text.0);
+                mistakes.keep(seen(text).and_then(form));
+            }
+            Err(ReadError::known())
+        }
+    };
     let kept = mistakes.keep(kept);
     let kept = mistakes.or(kept)?;
     Ok(Forms::of(Composed { parts, start, invariants: kept, notes }))
@@ -106,13 +113,14 @@ fn read(mut keys: Keys) -> Result<Forms, ReadError> {
 
 /// The invariants, whose names are none of those that are taken.
 fn read_invariants(
-    texts: BTreeMap<String, Text>,
+    texts: BTreeMap<String, Key<Text>>,
     mut taken: BTreeSet<String>,
     names: &Names,
 ) -> Result<Vec<(String, Formula)>, ReadError> {
     let (mut kept, mut mistakes) = (Vec::new(), ReadError::default());
-    for (name, Text(text)) in texts {
+    for (name, text) in texts {
         let key = "invariants".entry(&name);
+        let Some(Text(text)) = mistakes.keep(text) else { continue };
         if !taken.insert(name.clone()) {
             let message = format!("the invariant `{name}` has the name of something else");
             mistakes.add(Refusal::at(key, message));
@@ -128,12 +136,12 @@ fn of_part(i: usize, key: &str) -> String {
     "parts".index(i).entry(key)
 }
 
-/// The spaces of the parts with their places, where all are known, and the start.
+/// The spaces of the parts with their places, where they are known, and the start.
 fn places(
     keys: &[PartKeys],
     notes: &mut Vec<String>,
     mistakes: &mut ReadError,
-) -> (Option<Vec<Space>>, Point) {
+) -> (Vec<Option<Space>>, Point) {
     let (mut vectors, mut rotations, mut numbers) = (Vec::new(), Vec::new(), Vec::new());
     let spaces = keys.iter().enumerate().map(|(i, part)| {
         let space = match mistakes.keep(seen(&part.space))?.as_str() {
@@ -163,7 +171,7 @@ fn places(
     // Each is read, also after one that is wrong.
     let spaces: Vec<_> = spaces.collect();
     let start = (vectors.into(), (rotations.into(), numbers.into()));
-    (spaces.into_iter().collect(), start)
+    (spaces, start)
 }
 
 /// The refusal of a start that is missing or of another shape.
@@ -216,7 +224,7 @@ fn list(i: usize, part: &PartKeys) -> Result<&[f64], ReadError> {
 /// twice.
 fn names_of(
     keys: &[PartKeys],
-    spaces: &[Space],
+    spaces: &[&Space],
     parameters: &Parameters,
 ) -> Result<(Vec<String>, BTreeSet<String>), ReadError> {
     let (mut coordinates, mut taken) = (Vec::new(), BTreeSet::new());

@@ -49,28 +49,33 @@ const NAMED_MAX: usize = 9;
 pub(super) fn on(named: Named, given: Given) -> Result<Forms, ReadError> {
     let algebra = named.algebra;
     let Given { names, hamiltonian, inverse_inertia, momentum } = given;
-    let momentum = match (algebra, momentum?) {
+    let momentum = momentum.and_then(|momentum| match (algebra, momentum) {
         (Algebra::So, Numbers::List(above)) => antisymmetric(&above).ok_or_else(|| {
             let message = format!(
                 "found {}, expected the n(n-1)/2 entries above the diagonal, or n rows of n",
                 amount(above.len(), "numbers")
             );
-            Refusal::at("momentum", message)
-        })?,
-        (_, momentum) => momentum.square("momentum")?,
-    };
-    let n = momentum.nrows();
-    named.check_size(n, "momentum")?;
-    let group = algebra.group(n, "momentum")?;
-    let in_algebra = match miss(algebra, "momentum", &momentum, ROUNDING) {
-        None => Ok(()),
-        Some(Miss { key, why, form }) => {
-            let message = format!("it is not in {}: {why}", algebra.name(n));
-            Err(Refusal { help: Some(form), ..Refusal::at(key, message) })
+            Refusal::at("momentum", message).into()
+        }),
+        (_, momentum) => momentum.square("momentum"),
+    });
+    let n = seen(&momentum).map(Mat::nrows);
+    let form = form_of(inverse_inertia, hamiltonian, &names, n.as_ref().ok().copied());
+    let group = n.and_then(|n| {
+        named.check_size(n, "momentum")?;
+        Ok(algebra.group(n, "momentum")?)
+    });
+    let momentum = momentum.and_then(|momentum| {
+        seen(&group)?;
+        match miss(algebra, "momentum", &momentum, ROUNDING) {
+            None => Ok(momentum),
+            Some(Miss { key, why, form }) => {
+                let message = format!("it is not in {}: {why}", algebra.name(momentum.nrows()));
+                Err(Refusal { help: Some(form), ..Refusal::at(key, message) }.into())
+            }
         }
-    };
-    let form = form_of(inverse_inertia, hamiltonian, &names, n);
-    let (form, ()) = all!(form, in_algebra)?;
+    });
+    let (group, momentum, form) = all!(group, momentum, form)?;
     let energy = Projected { algebra, form };
     let alone = EulerEquation { group, energy, momentum };
     Ok(Forms::of(alone.clone()).or(Forms::of(WithGroup(alone))))
@@ -81,16 +86,20 @@ fn form_of(
     inverse_inertia: Key<Option<Table>>,
     hamiltonian: Key<Option<Text>>,
     keys: &FormulaKeys,
-    n: usize,
+    n: Option<usize>,
 ) -> Result<Form, ReadError> {
     let stated = ("inverse_inertia", inverse_inertia?);
     match exactly_one(stated, ("hamiltonian", hamiltonian?))? {
         Either::First(table) => Ok(Form::Weights(square("inverse_inertia", &table, n)?)),
-        Either::Second(_) if n > NAMED_MAX => {
-            let message = format!("the momentum is {n}×{n}, expected at most {NAMED_MAX} rows");
-            Err(Refusal::at("hamiltonian", message).into())
-        }
         Either::Second(text) => {
+            let Some(n) = n else {
+                Formula::check_form("hamiltonian", &text.0)?;
+                return Err(ReadError::known());
+            };
+            if n > NAMED_MAX {
+                let message = format!("the momentum is {n}×{n}, expected at most {NAMED_MAX} rows");
+                return Err(Refusal::at("hamiltonian", message).into());
+            }
             let names = keys.names("hamiltonian", row_columns("m", n, n), SampleKeys::none())?;
             let (energy, names) = (Energy::read(&text, &names), names.checked());
             let (energy, _) = all!(energy, names)?;

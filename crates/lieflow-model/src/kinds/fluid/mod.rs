@@ -62,8 +62,7 @@ fn below(n: usize) -> impl Iterator<Item = (usize, usize)> {
 fn read(keys: Keys) -> Result<Forms, ReadError> {
     let Keys { surface, n, random, jets, modes, vortices, .. } = keys;
     let (surface, size) = (surface.and_then(check_surface), n.and_then(check_size));
-    let (surface, n, random, jets, modes, vortices) =
-        all!(surface, size, random, jets, modes, vortices)?;
+    let (surface, n) = all!(surface, size)?;
     let (place, start) = Vorticity { random, jets, modes, vortices }.on(&surface, n)?;
     Ok(Forms::of(Fluid { fluid: Zeitlin::new(place)?, start }))
 }

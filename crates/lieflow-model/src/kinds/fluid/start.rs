@@ -19,12 +19,12 @@ read_by_keys! {
 
 read_by_keys! {
     pub(super) struct VortexKeys {
-        latitude: Option<Real>,
-        longitude: Option<Real>,
-        x: Option<Real>,
-        y: Option<Real>,
-        circulation: Real,
-        width: Real,
+        latitude: Key<Option<Real>>,
+        longitude: Key<Option<Real>>,
+        x: Key<Option<Real>>,
+        y: Key<Option<Real>>,
+        circulation: Key<Real>,
+        width: Key<Real>,
     }
 }
 
@@ -50,10 +50,10 @@ pub(super) fn check_size(Whole(n): Whole<2>) -> Result<usize, ReadError> {
 
 /// What the vorticity at the start is made of.
 pub(super) struct Vorticity {
-    pub(super) random: Option<Random>,
-    pub(super) jets: Option<Vec<Reals<2>>>,
-    pub(super) modes: Option<Vec<List>>,
-    pub(super) vortices: Option<Vec<VortexKeys>>,
+    pub(super) random: Key<Option<Random>>,
+    pub(super) jets: Key<Option<Vec<Reals<2>>>>,
+    pub(super) modes: Key<Option<Vec<List>>>,
+    pub(super) vortices: Key<Option<Vec<VortexKeys>>>,
 }
 
 impl Vorticity {
@@ -62,12 +62,12 @@ impl Vorticity {
     /// # Errors
     /// Refusals of the keys.
     pub(super) fn on(self, surface: &str, n: usize) -> Result<(Place, ComplexMatrix), ReadError> {
-        let given = self.jets.is_some() || self.modes.is_some() || self.vortices.is_some();
-        if given && self.random.is_some() {
+        let sum = given(&self.jets) || given(&self.modes) || given(&self.vortices);
+        if sum && given(&self.random) {
             let message = "`random` and `jets`, `modes` or `vortices`, expected one or the other";
             return Err(Refusal::at("random", message).into());
         }
-        if !given && self.random.is_none() {
+        if !sum && !given(&self.random) {
             let message = "expected `random`, `jets`, `modes` or `vortices`, found none";
             return Err(Refusal::section(message).into());
         }
@@ -86,26 +86,32 @@ impl Vorticity {
         })
     }
 
-    fn start<F: Fields>(&self, fluid: &F) -> Result<ComplexMatrix, ReadError> {
-        if let Some(Random { seed, below }) = &self.random {
+    fn start<F: Fields>(self, fluid: &F) -> Result<ComplexMatrix, ReadError> {
+        if let Some(Random { seed, below }) = self.random? {
             let mut rng = Pcg64::seed_from_u64(seed.0);
             let random = fluid.random_below(&mut rng, below.0 as usize);
             return Ok(random.map_err(|error| Refusal::from(error).about("random"))?);
         }
-        let jets = self.jets.iter().flatten().enumerate();
-        let jets = jets.map(|(i, jet)| fluid.jet(jet.0).map_err(at("jets", i)));
-        let modes = self.modes.iter().flatten().enumerate();
-        let modes = modes.map(|(i, mode)| fluid.mode(&mode.values()).map_err(at("modes", i)));
-        let vortices = self.vortices.iter().flatten().enumerate();
-        let vortices = vortices.map(|(i, keys)| fluid.vortex(keys).map_err(at("vortices", i)));
+        let is_whole = self.jets.is_ok() && self.modes.is_ok() && self.vortices.is_ok();
         let mut mistakes = ReadError::default();
+        let jets = mistakes.keep(self.jets).flatten().into_iter().flatten().enumerate();
+        let jets = jets.map(|(i, jet)| Ok(fluid.jet(jet.0).map_err(at("jets", i))?));
+        let modes = mistakes.keep(self.modes).flatten().into_iter().flatten().enumerate();
+        let modes =
+            modes.map(|(i, mode)| Ok(fluid.mode(&mode.values()).map_err(at("modes", i))?));
+        let vortices = mistakes.keep(self.vortices).flatten().into_iter().flatten().enumerate();
+        let vortices = vortices.map(|(i, keys)| fluid.vortex(&"vortices".index(i), keys));
         let parts = jets.chain(modes).chain(vortices).filter_map(|part| mistakes.keep(part));
         let sum = parts.reduce(|mut sum, part| {
             sum.add(1.0, &part);
             sum
         });
+        let sum = mistakes.or(Some(sum)).and_then(|sum| match is_whole {
+            true => Ok(sum),
+            false => Err(ReadError::known()),
+        });
         let none = || Refusal::section("no jets, modes or vortices, expected at least one");
-        let sum = mistakes.or(Some(sum))?.ok_or_else(none)?;
+        let sum = sum?.ok_or_else(none)?;
         match LinearSpace::is_finite(&sum) {
             true => Ok(sum),
             false => Err(Refusal::section("the vorticity is not finite").into()),
@@ -137,7 +143,14 @@ trait Fields {
     fn random_below(&self, rng: &mut Pcg64, below: usize) -> Result<ComplexMatrix, Error>;
     fn jet(&self, jet: [f64; 2]) -> Result<ComplexMatrix, String>;
     fn mode(&self, mode: &[f64]) -> Result<ComplexMatrix, String>;
-    fn vortex(&self, keys: &VortexKeys) -> Result<ComplexMatrix, String>;
+    fn vortex(&self, at: &str, keys: VortexKeys) -> Result<ComplexMatrix, ReadError>;
+}
+
+/// The circulation and the width of a vortex.
+fn strength(at: &str, circulation: Key<Real>, width: Key<Real>) -> Result<(f64, f64), ReadError> {
+    let width = width.and_then(|x| x.checked(&at.entry("width"), "a number > 0", |x| x > 0.0));
+    let (circulation, width) = all!(circulation, width)?;
+    Ok((circulation.0, width))
 }
 
 impl Fields for Zeitlin<Sphere> {
@@ -160,32 +173,27 @@ impl Fields for Zeitlin<Sphere> {
         omega[(l * l + l + m) as usize] = amplitude;
         self.from_coefficients(&omega).map_err(in_words)
     }
-    fn vortex(&self, keys: &VortexKeys) -> Result<ComplexMatrix, String> {
-        let VortexKeys {
-            latitude: Some(latitude),
-            longitude: Some(longitude),
-            x: None,
-            y: None,
-            ..
-        } = keys
-        else {
-            return Err("a vortex on the sphere has a latitude and a longitude".into());
-        };
-        for (name, x, limit) in [("latitude", latitude, FRAC_PI_2), ("longitude", longitude, TAU)] {
-            if x.0.abs() > limit {
-                return Err(format!(
-                    "{name} = {}, expected {:.4} to {limit:.4}, in radians",
-                    x.0, -limit
-                ));
+    fn vortex(&self, at: &str, keys: VortexKeys) -> Result<ComplexMatrix, ReadError> {
+        let VortexKeys { latitude, longitude, x, y, circulation, width } = keys;
+        let place = all!(latitude, longitude, x, y).and_then(|place| match place {
+            (Some(latitude), Some(longitude), None, None) => {
+                let within = |key: &str, x: Real, limit: f64| {
+                    let expected = format!("{:.4} to {limit:.4}, in radians", -limit);
+                    x.checked(&at.entry(key), &expected, |x| x.abs() <= limit)
+                };
+                let latitude = within("latitude", latitude, FRAC_PI_2);
+                let longitude = within("longitude", longitude, TAU);
+                all!(latitude, longitude)
             }
-        }
-        let vortex = Vortex {
-            latitude: latitude.0,
-            longitude: longitude.0,
-            circulation: keys.circulation.0,
-            width: width(keys)?,
-        };
-        self.vortices(&[vortex]).map_err(in_words)
+            _ => {
+                let message = "a vortex on the sphere has a latitude and a longitude";
+                Err(Refusal::at(at, message).into())
+            }
+        });
+        let strength = strength(at, circulation, width);
+        let ((latitude, longitude), (circulation, width)) = all!(place, strength)?;
+        let vortex = Vortex { latitude, longitude, circulation, width };
+        Ok(self.vortices(&[vortex]).map_err(|error| Refusal::from(error).about(at))?)
     }
 }
 
@@ -212,18 +220,15 @@ impl Fields for Zeitlin<Torus> {
         let m = [whole("m1", m1, [-max, max])?, whole("m2", m2, [-max, max])?];
         self.from_modes(&[(m, [a, b])]).map_err(in_words)
     }
-    fn vortex(&self, keys: &VortexKeys) -> Result<ComplexMatrix, String> {
-        let VortexKeys { latitude: None, longitude: None, x: Some(x), y: Some(y), .. } = keys
-        else {
-            return Err("a vortex on the torus has x and y".into());
-        };
-        self.vortices(&[([x.0, y.0], keys.circulation.0, width(keys)?)]).map_err(in_words)
-    }
-}
-
-fn width(keys: &VortexKeys) -> Result<f64, String> {
-    match keys.width.0 {
-        width if width > 0.0 => Ok(width),
-        width => Err(format!("width = {width}, expected a number > 0")),
+    fn vortex(&self, at: &str, keys: VortexKeys) -> Result<ComplexMatrix, ReadError> {
+        let VortexKeys { latitude, longitude, x, y, circulation, width } = keys;
+        let place = all!(latitude, longitude, x, y).and_then(|place| match place {
+            (None, None, Some(x), Some(y)) => Ok([x.0, y.0]),
+            _ => Err(Refusal::at(at, "a vortex on the torus has x and y").into()),
+        });
+        let strength = strength(at, circulation, width);
+        let (place, (circulation, width)) = all!(place, strength)?;
+        let vortex = (place, circulation, width);
+        Ok(self.vortices(&[vortex]).map_err(|error| Refusal::from(error).about(at))?)
     }
 }

@@ -26,7 +26,7 @@ use super::body::TYPED;
 use super::entries::{above_diagonal, check_rows, check_symmetric, side_of};
 use super::matrix::MatrixAction;
 use super::prelude::*;
-use crate::formula::{Formula, Text, Texts};
+use crate::formula::{Formula, Names, Text, Texts};
 use crate::problem::row_columns;
 
 /// The entry in the list of kinds.
@@ -113,20 +113,27 @@ fn read(mut keys: Keys) -> Result<Forms, ReadError> {
         return Err(Refusal::at("action", "lagrangian is an action of sp").into());
     }
     let (mut notes, mut mistakes) = (Vec::new(), ReadError::default());
-    let start = start(algebra, &group, action, [real, start_imaginary], &mut notes)?;
-    let shape = match (complex, action) {
-        (false, _) => [start.nrows(), start.ncols()],
-        (true, MatrixAction::Linear) => [n, start.ncols()],
-        (true, _) => [n, n],
+    let start = start(algebra, &group, action, [real, start_imaginary], &mut notes);
+    // Only of this action the start says how many entries a point has.
+    let shape = match action {
+        MatrixAction::Linear => seen(&start).map(|start| [n, start.ncols()]),
+        MatrixAction::Lagrangian => Ok([n / 2, n / 2]),
+        _ => Ok([n, n]),
     };
-    let variables = ["t".to_owned()].into_iter().chain(entry_names(algebra, shape));
-    let names = formulas.names("field", variables, samples)?;
+    let names = shape.and_then(|shape| {
+        let variables = ["t".to_owned()].into_iter().chain(entry_names(algebra, shape));
+        formulas.names("field", variables, samples)
+    });
     let formulas = field.into_iter().filter_map(|(place, key, Text(text))| {
-        Some((place, mistakes.keep(Formula::read(&key, &text, &names))?))
+        let formula = match &names {
+            Ok(names) => Formula::read(&key, &text, names),
+            Err(_) => Formula::check_form(&key, &text).and_then(|()| Err(ReadError::known())),
+        };
+        Some((place, mistakes.keep(formula)?))
     });
     let field: Arc<[_]> = formulas.collect();
-    let names = mistakes.keep(names.checked());
-    let names = mistakes.or(names)?;
+    let (names, start) = (mistakes.keep(names.and_then(Names::checked)), mistakes.keep(start));
+    let (names, start) = mistakes.or(names.zip(start))?;
     let linear = (1..names.variables().len()).all(|y| field.iter().all(|(_, f)| !f.uses(y)));
     let equation = Equation { algebra, group, action, field, by_upper, linear, start, notes };
     Ok(Forms::of(equation))

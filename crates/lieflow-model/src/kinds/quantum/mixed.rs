@@ -53,23 +53,24 @@ fn start(n: &Key<usize>, keys: Keys) -> Result<Mat<f64>, ReadError> {
     at_most_one([rho, ("amplitudes_imaginary", amplitudes_imaginary.is_some())])?;
     at_most_one([psi, ("density_imaginary", density_imaginary.is_some())])?;
     let stated = exactly_one(("density", density), ("amplitudes", amplitudes))?;
-    let size = *seen(n)?;
+    let levels = n.as_ref().ok().copied();
     let entries: [Mat<f64>; 2] = match stated {
         Either::First(real) => {
-            let real = symmetric("density", &real, Some(size), ROUNDING);
-            let imaginary = imaginary_part("density_imaginary", density_imaginary, size, 1.0);
+            let real = symmetric("density", &real, levels, ROUNDING);
+            let imaginary = imaginary_part("density_imaginary", density_imaginary, levels, 1.0);
             let (real, imaginary) = all!(real, imaginary)?;
             [real, imaginary]
         }
         Either::Second(list) => {
             let psi = state(n, Ok(list), Ok(amplitudes_imaginary))?;
+            let size = *seen(n)?;
             let [re, im] = [0, size].map(|part| move |psi: &Mat<f64>, i: usize| psi[(part + i, 0)]);
             let of = |i, j| re(&psi, i) * re(&psi, j) + im(&psi, i) * im(&psi, j);
             let imaginary = |i, j| im(&psi, i) * re(&psi, j) - re(&psi, i) * im(&psi, j);
             [Mat::from_fn(size, size, of), Mat::from_fn(size, size, imaginary)]
         }
     };
-    let rho = density_matrix(size, |i, j| entries.each_ref().map(|part| part[(i, j)]));
+    let rho = density_matrix(*seen(n)?, |i, j| entries.each_ref().map(|part| part[(i, j)]));
     Ok(rho.map_err(|error| Refusal::from(error).about("density"))?)
 }
 

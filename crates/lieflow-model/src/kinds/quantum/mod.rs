@@ -122,10 +122,13 @@ impl Hamiltonian {
             Some(_) => {
                 let names = formulas.names(PARTS[0], ["t"], samples);
                 let (real, imaginary) = (keys.hamiltonian, keys.hamiltonian_imaginary);
-                let stated = all!(names, real, imaginary);
-                let stated = stated.and_then(|(names, re, im)| Stated::read([re, im], names));
-                let n = seen(&stated).map(|(n, _)| *n);
-                (n, stated.map(|(_, stated)| Of::Formulas(stated.into())))
+                let parts = all!(real, imaginary).map(|(re, im)| [re, im]);
+                let n = seen(&parts).and_then(levels);
+                let stated = parts.and_then(|parts| Stated::read(parts, *seen(&n)?, seen(&names)));
+                let (size, names) = (n.clone(), names.and_then(Names::checked));
+                let stated = all!(size, names, stated);
+                let n = n.map_err(|_| ReadError::known());
+                (n, stated.map(|(_, _, stated)| Of::Formulas(stated.into())))
             }
             None => {
                 let (n, drive) = Drive::read(keys);
@@ -169,6 +172,44 @@ impl Hamiltonian {
     }
 }
 
+/// The formulas of a part of H.
+type Rows = Vec<Vec<Text>>;
+
+/// Does each row have an entry for each level?
+fn is_whole(rows: &Rows) -> bool {
+    rows.iter().all(|row| row.len() == rows.len())
+}
+
+/// The number of levels that the two parts have.
+///
+/// # Errors
+/// Refusals of parts with other rows.
+fn levels(parts: &[Option<Rows>; 2]) -> Result<usize, ReadError> {
+    let n = parts.iter().flatten().next().map_or(0, Vec::len);
+    // The second part is compared with the first one only where that is right.
+    for (key, rows) in PARTS.into_iter().zip(parts) {
+        let Some(rows) = rows else { continue };
+        if rows.is_empty() || rows.len() != n {
+            let expected = if n == 0 { "at least 1".into() } else { n.to_string() };
+            let message = format!("found {}, expected {expected}", amount(rows.len(), "rows"));
+            return Err(Refusal::at(key, message).into());
+        }
+        let whole = is_whole(rows);
+        let expected = |i: usize| if whole { n } else { n - i };
+        if let Some((i, row)) = rows.iter().enumerate().find(|(i, row)| row.len() != expected(*i)) {
+            let message = format!(
+                "row {} has {}, expected {}: all rows have {n}, or those on and above the diagonal alone, {n} in \
+                 the first row and one less in each row below it",
+                i + 1,
+                amount(row.len(), "formulas"),
+                n - i
+            );
+            return Err(Refusal::at(key.index(i), message).into());
+        }
+    }
+    Ok(n)
+}
+
 /// The place of the entry (i, j), i ≤ j, among those on and above the diagonal, row by row.
 fn place(n: usize, i: usize, j: usize) -> usize {
     i * (2 * n - i + 1) / 2 + j - i
@@ -180,36 +221,29 @@ const LATER: [f64; 6] = [0.0, 0.5, 2.0, 7.0, 30.0, 100.0];
 const SAME: f64 = 1e-8;
 
 impl Stated {
-    /// The number of levels, and the formulas of the two parts.
-    fn read(parts: [Option<Vec<Vec<Text>>>; 2], names: Names) -> Result<(usize, Self), ReadError> {
+    /// The formulas of the two parts, of n levels.
+    fn read(
+        parts: [Option<Rows>; 2],
+        n: usize,
+        names: Result<&Names, ReadError>,
+    ) -> Result<Self, ReadError> {
         let mut mistakes = ReadError::default();
-        let n = parts.iter().flatten().next().map_or(0, Vec::len);
         let mut upper = vec![[None, None]; n * (n + 1) / 2];
         let mut lower = Vec::new();
         for (part, (key, rows)) in PARTS.into_iter().zip(parts).enumerate() {
-            let Some(rows) = rows else { continue };
-            if rows.is_empty() || rows.len() != n {
-                let expected = if n == 0 { "at least 1".into() } else { n.to_string() };
-                let message = format!("found {}, expected {expected}", amount(rows.len(), "rows"));
-                return Err(Refusal::at(key, message).into());
-            }
-            let whole = rows.iter().all(|row| row.len() == n);
+            let rows = rows.unwrap_or_default();
+            let whole = is_whole(&rows);
             for (i, row) in rows.into_iter().enumerate() {
-                let first = if whole { 0 } else { i };
-                if row.len() != n - first {
-                    let message = format!(
-                        "row {} has {}, expected {}: all rows have {n}, or those on and above the diagonal \
-                         alone, {n} in the first row and one less in each row below it",
-                        i + 1,
-                        amount(row.len(), "formulas"),
-                        n - first
-                    );
-                    return Err(Refusal::at(key.index(i), message).into());
-                }
                 for (j, Text(text)) in row.into_iter().enumerate() {
-                    let formula = Formula::read(&key.cell(i, j), &text, &names);
+                    let key = key.cell(i, j);
+                    let formula = match &names {
+                        Ok(names) => Formula::read(&key, &text, names),
+                        Err(known) => {
+                            Formula::check_form(&key, &text).and_then(|()| Err(known.clone()))
+                        }
+                    };
                     let Some(formula) = mistakes.keep(formula) else { continue };
-                    let j = first + j;
+                    let j = if whole { j } else { i + j };
                     match i <= j {
                         true => upper[place(n, i, j)][part] = Some(formula),
                         false => lower.push(((part, i, j), formula)),
@@ -217,8 +251,7 @@ impl Stated {
                 }
             }
         }
-        let names = mistakes.keep(names.checked());
-        mistakes.or(names.map(|_| (n, Stated { upper, lower })))
+        mistakes.or(names.is_ok().then_some(Stated { upper, lower }))
     }
 
     fn formulas(&self) -> impl Iterator<Item = &Formula> {
@@ -279,12 +312,13 @@ impl Drive {
         let missing = |key| move || Refusal::section(format!("missing key `{key}` in [problem]"));
         let energies = energies.and_then(|x| Ok(x.ok_or_else(missing("energies"))?.values()));
         let n = seen(&energies).map(Vec::len);
+        let size = n.as_ref().ok().copied();
         let real = coupling.and_then(|x| {
             let table = x.ok_or_else(missing("coupling"))?;
-            symmetric("coupling", &table, Some(n.clone()?), ROUNDING)
+            symmetric("coupling", &table, size, ROUNDING)
         });
         let imaginary = coupling_imaginary
-            .and_then(|table| imaginary_part("coupling_imaginary", table, n.clone()?, 0.0));
+            .and_then(|table| imaginary_part("coupling_imaginary", table, size, 0.0));
         let pulse = pulse.and_then(|pulse| match pulse {
             Some(Reals([_, width])) if width <= 0.0 => {
                 let message = format!("width = {width}, expected a number > 0");
@@ -319,24 +353,20 @@ impl Drive {
     }
 }
 
-/// Does a key have a value, be it wrong?
-fn given<T>(key: &Key<Option<T>>) -> bool {
-    !matches!(key, Ok(None))
-}
-
 /// The antisymmetric n×n matrix of a key, to the rounding of numbers of this size. It is 0 if the key is left out.
 fn imaginary_part(
     key: &str,
     table: Option<Table>,
-    n: usize,
+    n: Option<usize>,
     size: f64,
 ) -> Result<Mat<f64>, ReadError> {
-    let x = table.map_or(Ok(Mat::zeros(n, n)), |table| square(key, &table, n))?;
+    let zero = || Mat::zeros(n.unwrap_or(0), n.unwrap_or(0));
+    let x = table.map_or_else(|| Ok(zero()), |table| square(key, &table, n))?;
     let largest = largest_entry(x.as_ref());
     if largest > 0.0 {
         check_antisymmetric(key, &x, ROUNDING * (size / largest).max(1.0))?;
     }
-    Ok(Mat::from_fn(n, n, |i, j| 0.5 * (x[(i, j)] - x[(j, i)])))
+    Ok(Mat::from_fn(x.nrows(), x.nrows(), |i, j| 0.5 * (x[(i, j)] - x[(j, i)])))
 }
 
 /// The state of n levels with these amplitudes.
