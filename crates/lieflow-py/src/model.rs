@@ -1,6 +1,7 @@
 //! Problems by the name of their kind, and their runs.
 
 use std::sync::Arc;
+use std::time::Instant;
 
 use lieflow::catalog::{MethodSpec, all_methods};
 use lieflow::solve::{Next, Status};
@@ -20,7 +21,9 @@ use pyo3::types::PyDict;
 use crate::curve::Curve;
 use crate::error::{argument, refused};
 use crate::field::{self, Callable, Raised};
-use crate::run::{EventParts, Fitting, Function, LONGEST, Seen, Settings, Watch, Watched, save_of};
+use crate::run::{
+    EventParts, Fitting, Function, LONGEST, SIGNALS, Seen, Settings, Watch, Watched, save_of,
+};
 use crate::solve::knots;
 use crate::stepper::Stepper;
 use crate::tree::{mistake, mistakes, tree};
@@ -404,10 +407,15 @@ impl Model {
         let times = t.as_slice()?;
         let found = py.detach(|| {
             let mut numbers: Vec<f64> = Vec::with_capacity(self.width() * times.len());
+            let mut asked = Instant::now();
             for (i, &t) in times.iter().enumerate() {
+                if asked.elapsed() >= SIGNALS {
+                    Python::attach(|py| py.check_signals()).map_err(Ok)?;
+                    asked = Instant::now();
+                }
                 let mut row = match self.model.exact([t0, t]) {
                     None => return Ok(None),
-                    Some(row) => row.map_err(|error| (i, error))?,
+                    Some(row) => row.map_err(|error| Err((i, error)))?,
                 };
                 if let Some(before) = numbers.len().checked_sub(row.len()) {
                     self.model.schema().follow(&numbers[before..], &mut row);
@@ -416,7 +424,8 @@ impl Model {
             }
             Ok(Some(numbers))
         });
-        let found = found.map_err(|(i, error)| refused(py, &format!("t[{i}]"), &error))?;
+        let refuse = |(i, error)| refused(py, &format!("t[{i}]"), &error);
+        let found = found.map_err(|error: Result<PyErr, _>| error.unwrap_or_else(refuse))?;
         let array = |x: Vec<f64>| field::array(py, &[times.len(), self.width()], &x);
         found.map(array).transpose()
     }

@@ -19,7 +19,7 @@ use crate::field::{self, Callable, Raised};
 use crate::formulas::Formulas;
 
 /// How often a run asks for signals.
-const SIGNALS: Duration = Duration::from_millis(20);
+pub(crate) const SIGNALS: Duration = Duration::from_millis(20);
 
 /// The argument that limits the step size.
 pub(crate) const LONGEST: &str = "max_step";
