@@ -91,14 +91,10 @@ impl Texts {
     /// # Errors
     /// As [`Formula::check_form`], of all formulas.
     pub(super) fn check_form(&self, key: &str) -> Result<(), ReadError> {
-        let mut mistakes = ReadError::default();
-        if matches!(self, Texts::List(list) if list.is_empty()) {
-            mistakes.add(no_formulas(key));
+        match self {
+            Texts::List(list) if list.is_empty() => Err(no_formulas(key)),
+            _ => check_forms(self.texts(), |i| self.entry(key, i).0),
         }
-        for (i, text) in self.texts().enumerate() {
-            mistakes.keep(Formula::check_form(&self.entry(key, i).0, text));
-        }
-        mistakes.or(Some(()))
     }
 
     /// The entries of the value, row by row, and the number of its rows.
@@ -123,6 +119,18 @@ impl Texts {
             }
         }
     }
+}
+
+/// Checks the form of each text; `place` is that of the text with a number.
+fn check_forms<'t>(
+    texts: impl Iterator<Item = &'t str>,
+    place: impl Fn(usize) -> String,
+) -> Result<(), ReadError> {
+    let mut mistakes = ReadError::default();
+    for (i, text) in texts.enumerate() {
+        mistakes.keep(Formula::check_form(&place(i), text));
+    }
+    mistakes.or(Some(()))
 }
 
 fn no_formulas(key: &str) -> ReadError {
@@ -151,13 +159,7 @@ impl NamedTexts {
     pub(super) fn check_form(&self, key: &str) -> Result<(), ReadError> {
         match self {
             NamedTexts::Texts(texts) => texts.check_form(key),
-            NamedTexts::Rows(_) => {
-                let mut mistakes = ReadError::default();
-                for (i, text) in self.texts().enumerate() {
-                    mistakes.keep(Formula::check_form(&self.entry(key, i).0, text));
-                }
-                mistakes.or(Some(()))
-            }
+            NamedTexts::Rows(_) => check_forms(self.texts(), |i| self.entry(key, i).0),
         }
     }
 

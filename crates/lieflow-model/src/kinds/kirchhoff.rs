@@ -9,7 +9,6 @@ use lieflow::problems::{Euler, Kinetic};
 use lieflow::scalar::{Counted, Trig};
 use nalgebra::Vector3;
 
-use super::body::check_each;
 use super::flow::OnSe3;
 use super::prelude::*;
 use crate::problem::SERIES;
@@ -44,8 +43,12 @@ type Q = Quantity<Body>;
 fn read(keys: Keys) -> Result<Forms, ReadError> {
     let positive = |name: &str, key: Key<Reals<3>>| {
         key.and_then(|Reals(x)| {
-            check_each(name, &x, "a finite number > 0", |x| x > 0.0 && x.recip().is_finite())?;
-            Ok(Vector3::from(x))
+            let (mut mistakes, expected) = (ReadError::default(), "a finite number > 0");
+            for (i, x) in x.into_iter().enumerate() {
+                let good = |x: f64| x > 0.0 && x.recip().is_finite();
+                mistakes.keep(Real(x).checked(&name.index(i), expected, good));
+            }
+            mistakes.or(Some(Vector3::from(x)))
         })
     };
     let Keys { inertia, mass, angular_momentum, linear_momentum, .. } = keys;
