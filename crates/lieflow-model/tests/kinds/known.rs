@@ -75,6 +75,20 @@ fn a_body_in_a_fluid_at_rest() {
     assert!(far(&end, exact.momentum_body(2.0).unwrap().as_slice()) < 1e-8);
 }
 
+/// Kirchhoff's equations are Euler's with this energy as a formula, by the methods of both and by Lie series.
+#[test]
+fn a_body_in_a_fluid_is_a_hamiltonian_on_se3() {
+    let body = "kind = \"kirchhoff\"\ninertia = [1, 2, 3]\nmass = [1.5, 1.2, 0.7]\n\
+                angular_momentum = [0.3, 0.6, 1.0]\nlinear_momentum = [0.7, 0.4, 1.0]";
+    let energy = "kind = \"euler\"\nalgebra = \"se3\"\nmomentum = [0.3, 0.6, 1.0, 0.7, 0.4, 1.0]\n\
+                  hamiltonian = \"m1^2/2 + m2^2/4 + m3^2/6 + p1^2/3 + p2^2/2.4 + p3^2/1.4\"";
+    let quantities = "[\"angular_momentum\", \"linear_momentum\"]";
+    let by_formula = last(&scene(energy, RKMK4, FINE, "[\"momentum\"]"));
+    assert!(far(&last(&scene(body, RKMK4, FINE, quantities)), &by_formula) < 1e-13);
+    let series = "name = \"taylor12\"";
+    assert!(far(&last(&scene(body, series, FINE, quantities)), &by_formula) < 1e-8);
+}
+
 /// H = ½Σ(mᵢ²/Jᵢ + pᵢ²/Mᵢ), |p|², m·p, and |m||p| as the size of its terms.
 #[test]
 fn the_quantities_of_a_body_in_a_fluid() {
