@@ -2,8 +2,9 @@
 //!
 //! From the momentum m at the start, m⁺ = m(h) and g⁺ = g Ψ(h) by Jacobi's elliptic functions
 //! ([`Exact`]). Order: unbounded, reported as `usize::MAX`. Preserves: everything, to the
-//! rounding of a step. Cost: the constants of one orbit and its point at one time, at any h. It computes in f64 for every
-//! scalar type. To follow one orbit use [`Exact`], which computes the constants only once.
+//! rounding of a step. Cost: the constants of one orbit and its point at one time, at any h; further points from the same
+//! start, as the output times within a step, need no new constants. It computes in f64 for every scalar type. To follow
+//! one orbit without a run use [`Exact`].
 //! Source: C. G. J. Jacobi, J. reine angew. Math. 39 (1850); see [`Exact`].
 
 use nalgebra::{Matrix3, Vector3};
@@ -22,18 +23,41 @@ pub struct ExactMotion;
 
 impl Symmetric for ExactMotion {}
 
+/// The moments of inertia, and the orbit of the last step.
+#[derive(Clone, Debug)]
+pub struct ExactWork {
+    inertia: [f64; 3],
+    /// The momentum at the start of that step.
+    start: Vector3<f64>,
+    orbit: Exact,
+}
+
+impl ExactWork {
+    /// The orbit from this momentum and the attitude 𝟙.
+    #[inline]
+    fn orbit(&mut self, start: Vector3<f64>) -> Result<&Exact, Error> {
+        if self.start != start {
+            self.orbit = Exact::new(self.inertia, start.into(), Matrix3::identity())?;
+            self.start = start;
+        }
+        Ok(&self.orbit)
+    }
+}
+
 impl<P: FreeBody> Method<P> for ExactMotion
 where
     ScalarOf<P>: Into<f64>,
 {
-    /// J.
-    type Work = [f64; 3];
+    type Work = ExactWork;
 
     fn facts(&self, _: &P) -> Facts {
         Facts::of_order(usize::MAX).cost(None, MapCounts::default()).estimate("", Some(usize::MAX))
     }
-    fn work(&self, problem: &P, _: &PointOf<P>) -> Result<[f64; 3], Error> {
-        Ok([0, 1, 2].map(|k| 1.0 / problem.inverse_inertia()[k].into()))
+    fn work(&self, problem: &P, _: &PointOf<P>) -> Result<ExactWork, Error> {
+        let inertia = [0, 1, 2].map(|k| 1.0 / problem.inverse_inertia()[k].into());
+        let at_rest = Vector3::zeros();
+        let orbit = Exact::new(inertia, at_rest.into(), Matrix3::identity())?;
+        Ok(ExactWork { inertia, start: at_rest, orbit })
     }
     #[inline]
     fn step(
@@ -41,14 +65,13 @@ where
         problem: &P,
         Step { h, .. }: Step<ScalarOf<P>>,
         y: &mut PointOf<P>,
-        inertia: &mut [f64; 3],
+        work: &mut ExactWork,
     ) -> Result<(), StepError> {
         let (m, mut frame) = problem.load(y);
         let before: Vector3<f64> = m.map(Into::into);
         let failed = StepError::NotFinite { what: "the exact motion" };
-        let (next, turn) = Exact::new(*inertia, before.into(), Matrix3::identity())
-            .and_then(|motion| motion.state(h.into()))
-            .map_err(|_| failed)?;
+        let moved = work.orbit(before).and_then(|orbit| orbit.state(h.into()));
+        let (next, turn) = moved.map_err(|_| failed)?;
         // Both are right to ε, but the same h rounds them the same way in every step: a step of Newton's
         // iteration each takes them back to |m| and to the group.
         let size = before.amax();
@@ -76,11 +99,11 @@ where
         step: Step<ScalarOf<P>>,
         _: &Tolerance,
         from: &PointOf<P>,
-        inertia: &mut [f64; 3],
+        work: &mut ExactWork,
         to: &mut PointOf<P>,
     ) -> Result<ScalarOf<P>, StepError> {
         to.assign(from);
-        self.step(problem, step, to, inertia)?;
+        self.step(problem, step, to, work)?;
         Ok(Real::lit(0.0))
     }
 }

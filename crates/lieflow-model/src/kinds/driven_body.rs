@@ -15,7 +15,7 @@ use std::sync::Arc;
 
 use lieflow::actions::LeftTranslation;
 use lieflow::groups::{LieGroup, So3};
-use lieflow::problems::{BodyMotion, BodyTorque, Exact, Torque, TorqueBody};
+use lieflow::problems::{BodyMotion, BodyTorque, Torque, TorqueBody};
 use lieflow::scalar::{Counted, Real, Trig};
 use nalgebra::{Matrix3, Vector3};
 
@@ -302,9 +302,7 @@ impl System for Driven {
     }
     /// Without a torque: that of the free body.
     fn exact(&self, [t0, t1]: [f64; 2]) -> Option<Result<PointOf<Self>, Error>> {
-        let RigidBodySpec { inertia, momentum_body, attitude, .. } = self.spec;
-        let at =
-            |t: f64| Ok((Exact::new(inertia, momentum_body, attitude)?.state(t)?.1, self.start.1));
+        let at = |t: f64| Ok((self.spec.exact()?.state(t)?.1, self.start.1));
         self.torques.are_none().then(|| at(t1 - t0))
     }
     fn warnings(&self) -> Vec<String> {

@@ -9,7 +9,7 @@ use core::fmt::Debug;
 use core::marker::PhantomData;
 
 use lieflow::actions::Coadjoint;
-use lieflow::problems::{Exact, HeavyTop, TorqueBody};
+use lieflow::problems::{HeavyTop, TorqueBody};
 use lieflow::scalar::{Counted, Trig};
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
@@ -327,8 +327,7 @@ impl<R: Representation> System for Top<R> {
         let TopSpec { body, weight, vertical, .. } = &self.spec;
         let up = body.attitude * vertical;
         let at = |t: f64| {
-            let exact = Exact::new(body.inertia, body.momentum_body, body.attitude)?;
-            let (mu, g) = exact.state(t)?;
+            let (mu, g) = body.exact()?.state(t)?;
             Ok(R::point(g, mu, g.tr_mul(&up)))
         };
         (weight.norm() == 0.0).then(|| at(t1 - t0))

@@ -244,7 +244,7 @@ impl<S: System> Run for On<S> {
         curve_by(method, problem, like, numbers, &|t0| self.shared(asked.quantities, t0))
     }
     fn exact(&self, asked: Asked<'_>, t_span: [f64; 2]) -> Option<Result<Vec<f64>, Error>> {
-        let mut values = Vec::new();
+        let mut values = Vec::with_capacity(asked.schema.numbers());
         let end = self.system.exact(t_span)?;
         let at = Moment::of_run(t_span[1], t_span[0]);
         Some(

@@ -6,12 +6,13 @@ mod quantities;
 mod shape;
 
 use std::collections::BTreeMap;
+use std::sync::OnceLock;
 
 use faer::Mat;
 use lieflow::Error;
 use lieflow::groups::{LieGroup, MEMBERSHIP, So3};
-use lieflow::problems::RigidBody;
 use lieflow::problems::inertia::{impossible, principal_axes};
+use lieflow::problems::{Exact, RigidBody};
 use lieflow::so3::{quaternion_from_matrix, quaternion_from_wxyz};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
@@ -24,7 +25,7 @@ use super::prelude::*;
 use crate::reader::values::Diagonal;
 
 /// A rigid body with its initial state.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct RigidBodySpec {
     /// Principal moments of inertia.
     pub inertia: [f64; 3],
@@ -39,6 +40,8 @@ pub struct RigidBodySpec {
     pub axes: Option<Matrix3<f64>>,
     /// Changes that were made to numbers of the scene.
     pub notes: Vec<String>,
+    /// The motion without torque, when it was asked for.
+    orbit: OnceLock<Exact>,
 }
 
 impl RigidBodySpec {
@@ -69,8 +72,20 @@ impl RigidBodySpec {
         RigidBody::<f64>::new(inertia)?;
         check_each("momentum_body", &momentum_body, "a finite number", f64::is_finite)?;
         So3::new().check_element("attitude", &attitude, MEMBERSHIP)?;
-        let (quaternion, axes, notes) = (None, None, Vec::new());
-        Ok(RigidBodySpec { inertia, momentum_body, attitude, quaternion, axes, notes })
+        let (quaternion, axes, notes, orbit) = (None, None, Vec::new(), OnceLock::new());
+        Ok(RigidBodySpec { inertia, momentum_body, attitude, quaternion, axes, notes, orbit })
+    }
+
+    /// The motion without torque, from the start. The constants of its orbit are computed once.
+    ///
+    /// # Errors
+    /// Those of [`Exact::new`].
+    pub(super) fn exact(&self) -> Result<&Exact, Error> {
+        if let Some(orbit) = self.orbit.get() {
+            return Ok(orbit);
+        }
+        let orbit = Exact::new(self.inertia, self.momentum_body, self.attitude)?;
+        Ok(self.orbit.get_or_init(|| orbit))
     }
 
     /// The momentum in space.

@@ -13,8 +13,8 @@ use core::fmt::Debug;
 
 use lieflow::groups::{GroupMatrix, LieGroup, MatrixGroup, UnitQuaternions, hat, vee};
 use lieflow::problems::{
-    BodyState, Exact, RigidBody, RigidBodyAttitude, RigidBodyN, RigidBodyNAttitude,
-    RigidBodyQuaternion, RigidBodyState,
+    BodyState, RigidBody, RigidBodyAttitude, RigidBodyN, RigidBodyNAttitude, RigidBodyQuaternion,
+    RigidBodyState,
 };
 use lieflow::scalar::Counted;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
@@ -329,9 +329,8 @@ impl<R: Representation> System for Body<R> {
         self.spec.notes.clone()
     }
     fn exact(&self, [t0, t1]: [f64; 2]) -> Option<Result<PointOf<Self>, Error>> {
-        let &RigidBodySpec { inertia, momentum_body, attitude, .. } = &self.spec;
         let at = |t: f64| {
-            let exact = Exact::new(inertia, momentum_body, attitude)?;
+            let exact = self.spec.exact()?;
             let (m, orientation) = match R::TURNS {
                 true => exact.state(t).map(|(m, g)| (m, Orientation::Matrix(g)))?,
                 false => (exact.momentum_body(t)?, Orientation::NotModelled),
