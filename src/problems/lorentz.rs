@@ -23,16 +23,15 @@ use crate::scalar::{Ops, tally};
 /// A particle of charge-to-mass ratio q/m in the fields (E, B) that `field` gives at (τ, u).
 ///
 /// ```
-/// use lieflow::faer::mat;
 /// use lieflow::maps::Exp;
 /// use lieflow::methods::{Rkmk, tableau::RK4};
-/// use lieflow::problems::ChargedParticle;
+/// use lieflow::problems::{ChargedParticle, four_velocity};
 /// use lieflow::{SaveAt, TimeGrid, integrate};
 /// use lieflow::nalgebra::Vector3;
 /// // A constant E: the rapidity of the particle grows at the rate E in proper time.
 /// let field = |_: f64, _: &_| (Vector3::new(1.0, 0.0, 0.0), Vector3::zeros());
 /// let particle = ChargedParticle::new(1.0, field)?;
-/// let mut u = mat![[0.0], [0.0], [0.0], [1.0]];
+/// let mut u = four_velocity([0.0; 3])?;
 /// let grid = TimeGrid::new([0.0, 2.0], 0.5)?;
 /// integrate(&particle, &Rkmk::new(RK4, Exp), &grid, &SaveAt::Ends, &mut u, |_, _| {})?;
 /// assert!((u[(0, 0)] - 2f64.sinh()).abs() < 1e-14 && (u[(3, 0)] - 2f64.cosh()).abs() < 1e-14);
@@ -54,19 +53,19 @@ impl<F: Fn(f64, &Mat<f64>) -> (Vector3<f64>, Vector3<f64>)> ChargedParticle<F> {
         super::rigid_body::check_finite("ratio", &[ratio])?;
         Ok(ChargedParticle { group: MatrixGroup::indefinite(3, 1)?, ratio, field })
     }
+}
 
-    /// u from a velocity in units of c.
-    ///
-    /// # Errors
-    /// [`Error::OutOfRange`] for |v| ≥ 1 or not finite.
-    pub fn four_velocity(&self, v: [f64; 3]) -> Result<Mat<f64>, Error> {
-        let speed = Vector3::from(v).norm();
-        if speed.is_nan() || speed >= 1.0 {
-            return Err(Error::out_of_range("|v|", speed, "less than 1"));
-        }
-        let gamma = 1.0 / ((1.0 - speed) * (1.0 + speed)).sqrt();
-        Ok(Mat::from_fn(4, 1, |i, _| if i < 3 { gamma * v[i] } else { gamma }))
+/// The four-velocity (γv, γ) of a velocity v in units of c, as a column.
+///
+/// # Errors
+/// [`Error::OutOfRange`] for |v| ≥ 1 or not finite.
+pub fn four_velocity(v: [f64; 3]) -> Result<Mat<f64>, Error> {
+    let speed = Vector3::from(v).norm();
+    if speed.is_nan() || speed >= 1.0 {
+        return Err(Error::out_of_range("|v|", speed, "less than 1"));
     }
+    let gamma = 1.0 / ((1.0 - speed) * (1.0 + speed)).sqrt();
+    Ok(Mat::from_fn(4, 1, |i, _| if i < 3 { gamma * v[i] } else { gamma }))
 }
 
 impl<F: Fn(f64, &Mat<f64>) -> (Vector3<f64>, Vector3<f64>)> Problem for ChargedParticle<F> {

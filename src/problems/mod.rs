@@ -79,7 +79,7 @@ pub use invariants::{Invariant, Invariants, Law, Origin, Scale, explained_by_rou
 #[cfg(feature = "dense")]
 pub use isospectral::{IsospectralFlow, toda_lattice};
 #[cfg(feature = "dense")]
-pub use lorentz::ChargedParticle;
+pub use lorentz::{ChargedParticle, four_velocity};
 #[cfg(feature = "dense")]
 pub use lyapunov::Lyapunov;
 #[cfg(feature = "dense")]

@@ -9,7 +9,7 @@ use lieflow::maps::{CCSK, Cay, Ccsk, Exp, Pade22};
 use lieflow::methods::{CommutatorFree, LieSeries, Rkmk, commutator_free::CF4, tableau::RK4};
 use lieflow::problems::{
     BodyMotion, BodyTorque, ChargedParticle, Euler, Flow, HeavyTop, IsospectralFlow, Kinetic, Oja,
-    SphericalPendulum, SpinChain, TorqueBody, toda_lattice,
+    SphericalPendulum, SpinChain, TorqueBody, four_velocity, toda_lattice,
 };
 use lieflow::{Action, CoordinateMap};
 use nalgebra::{Matrix3, Vector3};
@@ -121,7 +121,7 @@ fn problems() {
     none!(IsospectralFlow::qr(3).expect("a flow"), positive);
     none!(Oja::new(l.clone(), 2).expect("a flow"), mat![[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]]);
     let particle = ChargedParticle::new(1.0, |_, _: &_| (v(0.1), v(0.2))).expect("a particle");
-    none!(particle, particle.four_velocity([0.1, 0.2, 0.3]).expect("a velocity"));
+    none!(particle, four_velocity([0.1, 0.2, 0.3]).expect("a velocity"));
     let sp4 = MatrixGroup::sp(4).expect("a group");
     check(&sp4, Lagrangian, Mat::identity(2, 2));
     let gl3 = MatrixGroup::gl(3).expect("a group");

@@ -2,7 +2,7 @@
 
 use super::*;
 use faer::Mat;
-use lieflow::problems::ChargedParticle;
+use lieflow::problems::{ChargedParticle, four_velocity};
 use nalgebra::Vector3;
 
 type V = Vector3<f64>;
@@ -17,7 +17,7 @@ fn gyration() {
     let (ratio, b, tau) = (-1.5, 0.8, 3.0);
     let particle =
         ChargedParticle::new(ratio, |_, _: &_| (V::zeros(), V::new(0.0, 0.0, b))).unwrap();
-    let start = particle.four_velocity([0.6, 0.0, 0.3]).unwrap();
+    let start = four_velocity([0.6, 0.0, 0.3]).unwrap();
     let end = flow(&particle, tau, 3, &start);
     let (s, c) = (-ratio * b * tau).sin_cos();
     let u = space(&start);
@@ -31,7 +31,7 @@ fn gyration() {
 fn drift() {
     let (e, b) = (V::new(0.0, 0.4, 0.0), V::new(0.0, 0.0, 1.0));
     let particle = ChargedParticle::new(2.0, move |_, _: &_| (e, b)).unwrap();
-    let start = particle.four_velocity(e.cross(&b).into()).unwrap();
+    let start = four_velocity(e.cross(&b).into()).unwrap();
     let end = flow(&particle, 10.0, 20, &start);
     assert!((&end - &start).norm_l2() < 1e-13);
 }
@@ -43,7 +43,7 @@ fn orders_and_the_mass_shell() {
         (V::new(tau.cos(), 0.2, 0.1 * u[(1, 0)]), V::new(0.3, tau.sin(), 1.0 + 0.1 * u[(0, 0)]))
     };
     let particle = ChargedParticle::new(1.0, field).unwrap();
-    let start = particle.four_velocity([0.3, -0.2, 0.5]).unwrap();
+    let start = four_velocity([0.3, -0.2, 0.5]).unwrap();
     assert!((particle.values(&start)[0] + 1.0).abs() < 4.0 * EPS);
     has_order_4(&particle, &start, 2.0, 20);
     // On a non-compact group rounding level is ε‖u‖² a step.
@@ -53,7 +53,7 @@ fn orders_and_the_mass_shell() {
     let classical = run(&particle, &Rk(RK4), 4.0, 100, &start);
     assert!((particle.values(&classical)[0] + 1.0).abs() > 1e-8);
     for v in [[1.0, 0.0, 0.0], [f64::NAN, 0.0, 0.0], [0.8, 0.8, 0.0]] {
-        assert!(particle.four_velocity(v).is_err());
+        assert!(four_velocity(v).is_err());
     }
     assert!(ChargedParticle::new(f64::INFINITY, field).is_err());
 }

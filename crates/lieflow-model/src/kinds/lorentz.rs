@@ -4,7 +4,7 @@
 use lieflow::dense::{multiply, squared_norm};
 use lieflow::groups::{AlgebraMatrix, LieAlgebra, MatrixGroup};
 use lieflow::maps::Exp;
-use lieflow::problems::{ChargedParticle, Flow};
+use lieflow::problems::{ChargedParticle, Flow, four_velocity};
 use lieflow::{CoordinateMap, Problem};
 use nalgebra::Vector3;
 
@@ -39,9 +39,7 @@ type Q = Quantity<Particle>;
 fn read(keys: Keys) -> Result<Forms, ReadError> {
     let Keys { charge_to_mass, electric, magnetic, velocity, .. } = keys;
     let start = velocity.and_then(|velocity| {
-        let still = ChargedParticle::new(0.0, |_: f64, _: &Mat<f64>| Default::default())?;
-        let start = still.four_velocity(velocity.0);
-        Ok(start.map_err(|error| Refusal::from(error).about("velocity"))?)
+        Ok(four_velocity(velocity.0).map_err(|error| Refusal::from(error).about("velocity"))?)
     });
     let (charge_to_mass, electric, magnetic, start) =
         all!(charge_to_mass, electric, magnetic, start)?;
