@@ -40,7 +40,7 @@ pub enum Error {
         expected_cols: usize,
     },
     /// An entry of a matrix is NaN or infinite.
-    #[error("{arg}[{row},{col}] = {value:?}, expected a finite number")]
+    #[error("{arg}[{row},{col}] = {}, expected a finite number", Plain(.value))]
     NotFiniteEntry {
         /// The argument.
         arg: &'static str,
@@ -121,7 +121,7 @@ pub enum Error {
         minimum: f64,
     },
     /// A number lies outside its range.
-    #[error("{arg} = {value:?}, expected {expected}")]
+    #[error("{arg} = {}, expected {expected}", Plain(.value))]
     OutOfRange {
         /// The argument, with its index where it has one.
         arg: String,
@@ -368,7 +368,7 @@ pub fn plain_complex(re: f64, im: f64) -> String {
 
 /// A run that stopped early. The state that the caller gave to the driver holds the last accepted point.
 #[derive(Clone, Copy, PartialEq, ThisError)]
-#[error("step {step} from t = {} with h = {h:?} failed: {source}", Plain(.t))]
+#[error("step {step} from t = {} with h = {} failed: {source}", Plain(.t), Plain(.h))]
 #[non_exhaustive]
 pub struct Failure {
     /// The number of steps that had been accepted.

@@ -127,8 +127,9 @@ pub enum RunError {
     Step(#[from] Failure),
     /// No step from t was small enough.
     #[error(
-        "no step from t = {} succeeded, down to h = {h:?} ({accepted} steps accepted, {rejected} rejected): {}",
+        "no step from t = {} succeeded, down to h = {} ({accepted} steps accepted, {rejected} rejected): {}",
         Plain(.t),
+        Plain(.h),
         reason(.source, *.rejected == 0 && .t + .h == *.t)
     )]
     StepSizeUnderflow {
@@ -145,8 +146,9 @@ pub enum RunError {
     },
     /// The attempts were used up.
     #[error(
-        "{max_steps} attempts did not reach the end: t = {}, last step h = {h:?} ({accepted} accepted, {rejected} rejected){}",
+        "{max_steps} attempts did not reach the end: t = {}, last step h = {} ({accepted} accepted, {rejected} rejected){}",
         Plain(.t),
+        Plain(.h),
         still_to_take(*left, *h)
     )]
     TooManySteps {
@@ -195,7 +197,7 @@ pub enum RunError {
         source: Error,
     },
     /// A point within an accepted step could not be computed.
-    #[error("no point within the step from t = {} with h = {h:?}: {source}", Plain(.t))]
+    #[error("no point within the step from t = {} with h = {}: {source}", Plain(.t), Plain(.h))]
     Within {
         /// The start of the step.
         t: f64,

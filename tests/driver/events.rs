@@ -28,7 +28,7 @@ fn an_event_that_stops_before_its_first_zero_is_refused() {
         .run(START)
         .expect_err("a count");
     assert!(matches!(failed.error, RunError::Setup(_)), "{failed}");
-    assert!(failed.to_string().contains("`never` = 0.0, expected at least 1"), "{failed}");
+    assert!(failed.to_string().contains("`never` = 0, expected at least 1"), "{failed}");
 }
 
 /// T13: what is found where.

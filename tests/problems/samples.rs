@@ -151,7 +151,7 @@ fn beyond_the_ends_is_an_error() {
     assert_eq!(samples.covers([3.0, 0.5]), Ok(()));
     assert_eq!(samples.covers([0.0, 4.0]), Err(Outside { t: 4.0, span: [0.0, 3.0] }));
     let error = Error::from(samples.covers([-1.0, 2.0]).unwrap_err()).to_string();
-    assert_eq!(error, "t = -1.0, expected a time in the span of the samples, 0 to 3");
+    assert_eq!(error, "t = -1, expected a time in the span of the samples, 0 to 3");
 }
 
 #[test]
@@ -164,8 +164,8 @@ fn a_table_that_is_none_is_refused() {
     };
     refused(&[], &[], "times: length 0, expected at least 2");
     refused(&[1.0], &[&[1.0]], "times: length 1, expected at least 2");
-    refused(&[0.0, 2.0, 1.0], &[], "times[2] = 1.0, expected more than times[1] = 2");
-    refused(&[0.0, 2.0, 2.0], &[], "times[2] = 2.0, expected more than times[1] = 2");
+    refused(&[0.0, 2.0, 1.0], &[], "times[2] = 1, expected more than times[1] = 2");
+    refused(&[0.0, 2.0, 2.0], &[], "times[2] = 2, expected more than times[1] = 2");
     refused(&[0.0, f64::NAN], &[], "times[1] = NaN, expected a finite number");
     refused(&[-1e308, 1e308], &[], "times = inf, expected times that span a finite length");
     refused(&[0.0, 1.0], &[&[0.0, 1.0], &[0.0]], "columns[1]: length 1, expected 2 as there are");
