@@ -122,10 +122,7 @@ impl Drive<'_> {
 
     fn steps(&mut self, output: &mut dyn AnyOutput) -> Result<Status, RunError> {
         let (t0, t1) = (self.times.t, self.times.t1);
-        self.times_done = match &self.save {
-            SaveAt::Times(times) => times.len() - self.save.times_after(t0).len(),
-            _ => 0,
-        };
+        self.times_done = self.save.times().len() - self.save.times_after(t0).len();
         if let Some(bytes) = self.resume.take() {
             self.read(output.points(), &bytes)?;
         } else {
@@ -164,7 +161,7 @@ impl Drive<'_> {
             }
             self.save_state(output, false);
         }
-        if self.shown_at != Some(t1) && !matches!(self.save, SaveAt::Times(_)) {
+        if self.shown_at != Some(t1) && self.save.end() {
             self.show_end_of_step(output)?;
         }
         Ok(Status::Finished)
@@ -231,7 +228,9 @@ impl Drive<'_> {
 
     fn next_time(&self) -> Option<f64> {
         match self.save {
-            SaveAt::Times(ref times) => times.get(self.times_done).copied(),
+            SaveAt::Times(ref times) | SaveAt::TimesAndEnds(ref times) => {
+                times.get(self.times_done).copied()
+            }
             SaveAt::Interval(length) => {
                 let (t0, t1) = (self.t0, self.times.t1);
                 let time = t0 + (length * (self.times_done + 1) as f64).copysign(t1 - t0);
@@ -380,7 +379,7 @@ impl Drive<'_> {
         }
         output.cut_kept(t);
         if let Some(name) = stopped {
-            if self.shown_at != Some(t) && !matches!(self.save, SaveAt::Times(_)) {
+            if self.shown_at != Some(t) && self.save.end() {
                 self.show_end_of_step(output)?;
             }
             return Ok(Some(Status::Event(name)));

@@ -179,6 +179,8 @@ pub enum SaveAt {
     Every(u64),
     /// At these times and no others, in the order of the run. They need not be ends of steps.
     Times(Vec<f64>),
+    /// At these times, at the start and at the end, also where an event ends the run.
+    TimesAndEnds(Vec<f64>),
     /// At the start, at equal intervals of this length from there on, and at the end.
     Interval(f64),
 }
@@ -200,17 +202,27 @@ impl SaveAt {
     pub(super) fn start(&self, t0: f64) -> bool {
         match self {
             SaveAt::End => false,
-            SaveAt::Ends | SaveAt::Every(_) | SaveAt::Interval(_) => true,
+            SaveAt::Ends | SaveAt::Every(_) | SaveAt::Interval(_) | SaveAt::TimesAndEnds(_) => true,
             SaveAt::Times(times) => times.first() == Some(&t0),
+        }
+    }
+
+    /// True if the end is shown whatever the times.
+    pub(super) fn end(&self) -> bool {
+        !matches!(self, SaveAt::Times(_))
+    }
+
+    /// The times that are given.
+    pub(super) fn times(&self) -> &[f64] {
+        match self {
+            SaveAt::Times(times) | SaveAt::TimesAndEnds(times) => times,
+            _ => &[],
         }
     }
 
     /// The times after t₀.
     pub(super) fn times_after(&self, t0: f64) -> &[f64] {
-        match self {
-            SaveAt::Times(times) => times.strip_prefix(&[t0]).unwrap_or(times),
-            _ => &[],
-        }
+        self.times().strip_prefix(&[t0]).unwrap_or(self.times())
     }
 
     /// The number of the next step after `n` that is shown.
@@ -245,7 +257,7 @@ impl SaveAt {
                 }
             }
             SaveAt::End | SaveAt::Ends | SaveAt::Every(_) => Ok(()),
-            SaveAt::Times(times) => {
+            SaveAt::Times(times) | SaveAt::TimesAndEnds(times) => {
                 let forward = if t1 >= t0 { 1.0 } else { -1.0 };
                 let mut last = f64::NEG_INFINITY;
                 for (i, &t) in times.iter().enumerate() {

@@ -354,6 +354,23 @@ fn a_state_that_is_set() {
     }
 }
 
+/// An event that ends the run is a point of the output, unless the times are given and no others.
+#[test]
+fn the_end_at_an_event_is_shown() {
+    let (body, method) = (body(), Rkmk::new(DOPRI5, Exp));
+    let times = |save: SaveAt| {
+        let solve = Solve::new(&body, &method, [0.0, 50.0]).tolerances(1e-9, 1e-9).save(save);
+        let run = solve.event(Event::new("m2", |_, m: &V| m.y).stop_after(1)).run(START);
+        let run = run.expect("a run");
+        assert_eq!(run.status, Status::Event("m2".into()));
+        (run.times, run.t)
+    };
+    let (given, end) = times(SaveAt::Times(vec![0.1, 40.0]));
+    assert_eq!(given, [0.1]);
+    assert_eq!(times(SaveAt::TimesAndEnds(vec![0.1, 40.0])), (vec![0.0, 0.1, end], end));
+    assert_eq!(times(SaveAt::TimesAndEnds(vec![0.1, end])), (vec![0.0, 0.1, end], end));
+}
+
 /// What an observer changes is gone on from, and it is asked whether it is on M.
 #[test]
 fn an_observer_changes_the_state() {

@@ -49,6 +49,10 @@ fn the_ends_are_observed_once_each() {
     assert_eq!(seen(SaveAt::Times(vec![0.26, 0.27, 0.9]), forward), [0.26, 0.27, 0.9]);
     assert_eq!(seen(SaveAt::Times(vec![1.0, 0.9, 0.5, 0.1]), backward), [1.0, 0.9, 0.5, 0.1]);
     assert_eq!(seen(SaveAt::Every(2), backward), [1.0, 0.5, 0.0]);
+    assert_eq!(seen(SaveAt::TimesAndEnds(vec![]), forward), [0.0, 1.0]);
+    assert_eq!(seen(SaveAt::TimesAndEnds(vec![0.3]), forward), [0.0, 0.3, 1.0]);
+    assert_eq!(seen(SaveAt::TimesAndEnds(vec![0.0, 0.5, 1.0]), forward), [0.0, 0.5, 1.0]);
+    assert_eq!(seen(SaveAt::TimesAndEnds(vec![0.9, 0.2]), backward), [1.0, 0.9, 0.2, 0.0]);
 }
 
 #[test]

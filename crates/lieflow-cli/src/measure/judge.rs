@@ -410,9 +410,9 @@ impl Rows {
                 let times = steps.map(|n| scene.grid.time(n)).chain([scene.grid.t_span()[1]]);
                 SaveAt::Times(times.collect())
             }
-            (SaveAt::Times(times), _) => {
+            (SaveAt::TimesAndEnds(times), _) => {
                 let thin = times.len().div_ceil(MOST_ROWS as usize).max(1);
-                SaveAt::Times(times.iter().step_by(thin).copied().collect())
+                SaveAt::TimesAndEnds(times.iter().step_by(thin).copied().collect())
             }
             (save, _) => save.clone(),
         };

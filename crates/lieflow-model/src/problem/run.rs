@@ -179,6 +179,10 @@ impl Plan<'_> {
             (SaveAt::End, _) => Some(1),
             (SaveAt::Ends, _) => Some(2),
             (SaveAt::Times(times), _) => Some(times.len() as u64),
+            (SaveAt::TimesAndEnds(times), _) => {
+                let ends = [t0, t1].into_iter().filter(|t| t.is_finite() && !times.contains(t));
+                Some((times.len() + ends.count()) as u64)
+            }
             _ if may_end_early || !t1.is_finite() => None,
             // An interval that is left of rounding alone has no row.
             (SaveAt::Interval(length), _) => {

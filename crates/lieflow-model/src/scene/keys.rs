@@ -476,7 +476,7 @@ impl OutputKeys {
         let intervals = |count: u64| SaveAt::Interval((t1 - t0).abs() / count as f64);
         let save = match (every, times, count, interval) {
             (Some(every), ..) => SaveAt::Every(every.0),
-            (_, Some(times), ..) => SaveAt::Times(times.iter().map(|t| t.0).collect()),
+            (_, Some(times), ..) => SaveAt::TimesAndEnds(times.iter().map(|t| t.0).collect()),
             (_, _, Some(_), _) if !t1.is_finite() => {
                 let message = "`count` divides a span with an end: expected `interval`, such as \
                                interval = 0.1";
@@ -488,18 +488,6 @@ impl OutputKeys {
             _ => SaveAt::Every(1),
         };
         save.check([t0, t1])?;
-        Ok(with_ends(save, [t0, t1]))
+        Ok(save)
     }
-}
-
-/// The start of a run is a row whatever the times, and the end, where it is known.
-fn with_ends(save: SaveAt, [t0, t1]: [f64; 2]) -> SaveAt {
-    let SaveAt::Times(mut times) = save else { return save };
-    if times.first() != Some(&t0) {
-        times.insert(0, t0);
-    }
-    if times.last() != Some(&t1) && t1.is_finite() {
-        times.push(t1);
-    }
-    SaveAt::Times(times)
 }
