@@ -15,7 +15,8 @@
 //! components decide there. rtol has a floor of 4 ε·‖y‖, the rounding of y. Lengths do not depend on the axes, so a run
 //! does not either.
 //!
-//! An rtol below [`least_rtol`] is refused where atol is 0: the error of a step has no digit there.
+//! An rtol below [`least_rtol`] is refused where atol is 0: the error of a step has no digit there. So is an atol that is far
+//! below the rounding of a part at the start, without an rtol ([`check_within_reach`](crate::space::check_within_reach)).
 //!
 //! A product has a part for each factor. SE(3) has two parts, rotation and translation. A power Gᴺ has the parts of G,
 //! shared by all copies.
@@ -217,6 +218,11 @@ impl Tolerance {
     /// The allowed error of a part of size 1. The first step is chosen by it.
     pub(crate) fn of_unit_size(&self) -> f64 {
         self.parts.iter().map(|part| part.scale(1.0)).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The smallest atol.
+    pub(crate) fn least_atol(&self) -> f64 {
+        self.parts.iter().map(PartTolerance::atol).fold(f64::INFINITY, f64::min)
     }
 
     /// The tolerance of all parts together, by [`Rule::PerLength`].

@@ -15,7 +15,7 @@ use crate::methods::{
 };
 use crate::problems::{AlgOf, PointOf, Problem, ScalarOf};
 use crate::scalar::Real;
-use crate::space::Metric;
+use crate::space::{Metric, check_within_reach};
 use crate::tolerance::Tolerance;
 
 /// How far from M, relative to y, a step may move because f is not in 𝔤. Rounding of f moves it less.
@@ -200,6 +200,7 @@ fn checked_start<P: Problem>(
         let mut parts = tolerance.scales();
         let none = action.error_ratio(group, &group.zero(), y, &mut parts);
         tolerance.check(parts.asked(), none.any_below(f64::INFINITY))?;
+        check_within_reach(tolerance, y)?;
     }
     Ok(restore)
 }

@@ -11,8 +11,9 @@ pub use numbers::Numbers;
 
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
+use crate::error::Error;
 use crate::scalar::{Counted, DoubleDouble, Ops, Real, larger, tally};
-use crate::tolerance::{PartTolerance, Scales};
+use crate::tolerance::{PartTolerance, Rule, Scales, Tolerance, least_rtol};
 
 /// Points that can be compared: those of a linear space with a norm.
 ///
@@ -49,6 +50,30 @@ pub struct Gap<'a, M: Metric + ?Sized> {
     error: GivenBy<'a, M>,
     /// The point at which the step started, if the error is that of a step.
     from: Option<&'a M>,
+}
+
+/// A tolerance of a part below this many of its roundings cannot be met. The estimated error of a step that moves the part by
+/// a millionth is rounding of that size.
+const OUT_OF_REACH: f64 = 1e-6;
+
+/// Checks that steps from y can meet a tolerance: that it is not far below the rounding of a part of y.
+///
+/// A part that is 0 at y has any tolerance. [`Rule::PerLength`] is not checked.
+///
+/// # Errors
+/// [`Error::OutOfRange`].
+pub fn check_within_reach<M: Metric>(tolerance: &Tolerance, y: &M) -> Result<(), Error> {
+    let rounding = Gap::relative(M::Scalar::lit(OUT_OF_REACH * M::Scalar::EPSILON));
+    let ratio = y.error_ratio(rounding, &mut tolerance.scales());
+    if tolerance.rule() != Rule::PerStep || ratio.any_below(1.0) {
+        return Ok(());
+    }
+    let least = tolerance.least_atol();
+    let expected = format!(
+        "a larger one, or rtol = {:.0e} or more beside it: no step from this start has so small an error",
+        least_rtol::<M::Scalar>()
+    );
+    Err(Error::out_of_range("atol", least, expected))
 }
 
 /// The way in which an error is given.

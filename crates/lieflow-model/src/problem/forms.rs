@@ -5,6 +5,7 @@ use core::fmt::Debug;
 use std::sync::Arc;
 
 use lieflow::catalog::MethodSpec;
+use lieflow::tolerance::Tolerance;
 use lieflow::{Error, RunError};
 
 use super::kind::{Figure, PrincipalInertia, Property, high_order};
@@ -66,6 +67,8 @@ pub(crate) trait Run: Debug + Send + Sync {
     fn problem_type(&self) -> &'static str;
     /// See [`Model::fits`](super::Model::fits).
     fn fits(&self, method: &MethodSpec) -> Result<Fit, Error>;
+    /// See [`Model::check_tolerance`](super::Model::check_tolerance).
+    fn check_tolerance(&self, tolerance: &Tolerance) -> Result<(), Error>;
     /// See [`Model::operations`](super::Model::operations).
     fn operations(
         &self,

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use lieflow::catalog::{MethodSpec, Needs};
 use lieflow::names::same;
 use lieflow::samples::Samples;
+use lieflow::tolerance::Tolerance;
 use lieflow::{Error, RunError, SaveAt, Stats, StepControl, TimeGrid};
 
 use super::forms::{Asked, Form, Forms, Run};
@@ -471,5 +472,13 @@ impl Model {
     /// The reason why it cannot.
     pub fn fits(&self, method: &MethodSpec) -> Result<Fit, Error> {
         self.form(method).fits(method)
+    }
+
+    /// Checks that the steps of a method from the start can meet a tolerance.
+    ///
+    /// # Errors
+    /// As [`check_within_reach`](lieflow::space::check_within_reach).
+    pub fn check_tolerance(&self, method: &MethodSpec, tolerance: &Tolerance) -> Result<(), Error> {
+        self.form(method).check_tolerance(tolerance)
     }
 }

@@ -4,6 +4,8 @@ use core::fmt::{self, Debug};
 use std::sync::{Arc, OnceLock};
 
 use lieflow::catalog::MethodSpec;
+use lieflow::space::check_within_reach;
+use lieflow::tolerance::Tolerance;
 use lieflow::{Error, RunError};
 
 use super::forms::{Asked, Form, Forms, Run};
@@ -261,6 +263,9 @@ impl<S: System> Run for On<S> {
     fn fits(&self, method: &MethodSpec) -> Result<Fit, Error> {
         let (problem, start) = self.ready()?;
         fits_by(method, &**problem, start)
+    }
+    fn check_tolerance(&self, tolerance: &Tolerance) -> Result<(), Error> {
+        check_within_reach(tolerance, &self.ready()?.1)
     }
     fn operations(
         &self,

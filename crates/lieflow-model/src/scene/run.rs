@@ -243,6 +243,10 @@ impl Scene {
             scene.limits.take(defaults::tolerances(order, &start));
             scene.adaptive = scene.limits.control(1.0).ok();
         }
+        if let Some(control) = &scene.adaptive {
+            let checked = model.check_tolerance(&scene.method, control.tolerance());
+            checked.map_err(|error| document.refusal("time", error.into()))?;
+        }
         Ok(scene)
     }
 
