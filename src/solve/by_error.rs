@@ -68,6 +68,10 @@ impl Timeline {
                     let forward = self.t1 > self.t;
                     run.points().accept();
                     self.accepted(run.points(), step, end)?;
+                    let smallest = self.stats.after_rejection.map_or(f64::INFINITY, |[_, h]| h);
+                    if in_a_row > 0 && size < smallest {
+                        self.stats.after_rejection = Some([end, size]);
+                    }
                     let Pacer::ByError(chooser) = &mut self.pacer else { return Ok(()) };
                     let passed = |wall: &f64| if forward { end >= *wall } else { end <= *wall };
                     chooser.wall = chooser.wall.filter(|wall| !passed(wall));

@@ -23,7 +23,7 @@ use crate::problems::{PointOf, Problem};
 use crate::space::Numbers;
 
 /// The name of the format, and its version.
-const HEADER: [u8; 8] = *b"lieflow\x03";
+const HEADER: [u8; 8] = *b"lieflow\x04";
 
 /// The largest number of values of a list.
 const LIST_MAX: u64 = 1 << 24;
@@ -79,6 +79,7 @@ fn each_of_stats(each: &mut Each<'_>, stats: &mut Stats) {
     for x in [&mut stats.smallest_step, &mut stats.largest_step, &mut stats.residual] {
         number(each, x);
     }
+    option(each, &mut stats.after_rejection, |each, x| x.iter_mut().for_each(|x| number(each, x)));
     option(each, &mut stats.evaluations, |each, n| each(n));
     option(each, &mut stats.maps, |each, MapCounts { psi, dpsi_inv, brackets }| {
         [psi, dpsi_inv, brackets].into_iter().for_each(each);

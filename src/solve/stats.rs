@@ -33,6 +33,9 @@ pub struct Stats {
     pub smallest_step: f64,
     /// The largest accepted step, without its sign.
     pub largest_step: f64,
+    /// The end and the size of the smallest step that followed a rejected attempt. There the motion is the hardest, as
+    /// within a short pulse of f. Another run that passes over it can be made to see it by a stop at this end.
+    pub after_rejection: Option<[f64; 2]>,
     /// How often the state was checked, and corrected to M if it had left it ([`Action::restore_to`](crate::Action::restore_to)).
     pub restored: u64,
     /// How often the state was too far from M to be corrected ([`RESIDUAL_MAX`](crate::groups::RESIDUAL_MAX)).

@@ -7,7 +7,7 @@ use lieflow::methods::tableau::{BS3, DOPRI5};
 use lieflow::methods::{Embedded, Rk, Rkmk};
 use lieflow::problems::{Flow, PointOf, Problem, RigidBody};
 use lieflow::tolerance::{PartTolerance, Rule, Tolerance};
-use lieflow::{LieAlgebra, RunError, Solve, Step};
+use lieflow::{LieAlgebra, RunError, Solve, Step, StepControl};
 use nalgebra::{Matrix3, Vector3};
 
 use crate::modes::V;
@@ -298,4 +298,47 @@ fn rtol_alone_from_zero() {
     assert!((rough.y.0 - fine.y.0).norm() < 1e-4);
     // Steps are few: none is a search for a part that is 0.
     assert!(rough.stats.accepted + rough.stats.rejected < 60, "{:?}", rough.stats);
+}
+
+/// A tolerance that no step can meet is refused before the first step; a part that starts at 0 has any.
+#[test]
+fn a_tolerance_out_of_reach_is_refused() {
+    let body = RigidBody::new([1.0, 2.0, 3.0]).expect("a body");
+    let method = Rkmk::new(DOPRI5, Exp);
+    let run = |y: V, tolerance: Tolerance| {
+        let control = StepControl::from(tolerance);
+        Solve::new(&body, &method, [0.0, 1e-3]).control(control).run(y)
+    };
+    let start = V::new(0.3, 2.0, -1.0);
+    let refused = run(start, both(0.0, 1e-30)).expect_err("a tolerance below rounding");
+    assert_eq!(
+        refused.to_string(),
+        "atol = 1e-30, expected a larger one, or rtol = 9e-16 or more beside it: no step from this start has so small an \
+         error"
+    );
+    for each in [[1e-9, 1e-30, 1e-9], [1e-30; 3]] {
+        let of_each = PartTolerance::per_component(0.0, each).expect("tolerances");
+        assert!(run(start, of_each.into()).is_err(), "{each:?}");
+    }
+    run(start, both(1e-15, 1e-30)).expect("rtol is enough");
+    run(start, both(0.0, 1e-18)).expect("a short step has such an error");
+    run(1e-14 * start, both(0.0, 1e-30)).expect("it is relative to the start");
+    run(V::zeros(), both(0.0, 1e-30)).expect("it stays at 0");
+}
+
+/// The statistics have the smallest step that followed a rejected attempt: a pulse of f is there.
+#[test]
+fn the_hardest_place_of_a_run_is_known() {
+    let (start, end) = (V::new(0.0, 0.0, 1.0), 10.0);
+    let run = |strength: f64| {
+        let rate = move |t: f64| 0.1 + strength * (-((t - 6.3) / 0.02f64).powi(2)).exp();
+        let turning = move |t: f64, v: &mut V| *v = V::new(rate(t), 0.0, 0.0);
+        let problem = Flow::of_time(So3::<f64>::new(), Linear, turning);
+        let method = Rkmk::new(BS3, Exp);
+        let solve = Solve::new(&problem, &method, [0.0, end]).max_step(0.1);
+        solve.tolerances(1e-8, 1e-8).run(start).expect("a run").stats
+    };
+    let [at, size] = run(20.0).after_rejection.expect("a rejected attempt");
+    assert!((at - 6.3).abs() < 0.06 && size < 0.02, "{at}, {size}");
+    assert_eq!(run(0.0).after_rejection, None);
 }

@@ -365,6 +365,7 @@ impl Seen {
             _ => None,
         };
         result.set_item("_tolerances", tolerances)?;
+        result.set_item("_hardest", stats.after_rejection.map(|[end, _]| end))?;
         result.set_item("residual", stats.residual)?;
         result.set_item("restored", stats.restored)?;
         result.set_item("unsure_steps", stats.unsure_steps)?;

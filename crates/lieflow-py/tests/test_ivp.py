@@ -15,6 +15,7 @@ from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
 import lieflow as lf
+from lieflow._ivp import _finer, settings_of
 
 ROTATION = {"group": "SO(3)", "frame": "body"}
 
@@ -476,6 +477,14 @@ def test_the_estimate_finds_a_pulse_that_the_run_passed_over():
     assert passed > 0.01 and abs(error.y - 0.02) < 1e-6 and error.found_by.endswith("in at least 2000 steps")
     found = lf.solve_ivp(f, (0, 100), np.eye(3), group="SO(3)", frame="body", stops=[50.0003, 50.0203])
     assert found.estimate_error().y < 1e-9
+    # A step of the second run ends where the first one has found a pulse.
+    def pulse(t, y):
+        return [0.1 + 5.0 * np.exp(-(((t - 50.742) / 0.2) ** 2)), 0.0, 0.2]
+
+    settings = settings_of(rtol=1e-7, atol=1e-7)
+    seen = lf.solve_ivp(pulse, (0, 100), np.eye(3), group="SO(3)", frame="body", rtol=1e-7, atol=1e-7, max_step=1.0)
+    stops = _finer(settings, seen, 0.0, 100.0)[1]["stops"]
+    assert len(stops) == 1 and abs(stops[0] - 50.742) < 0.5 and settings["stops"] == []
     # A limit of the user stays, and a run that takes long is not made in short steps.
     slow = lf.solve_ivp(f, (0, 100), np.eye(3), group="SO(3)", frame="body", min_step=1.0, first_step=2.0)
     assert "steps" not in slow.estimate_error().found_by

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use super::accuracy::{Check, Checked, LONG, Taken};
+use super::accuracy::{Check, Checked, LONG};
 use super::foresee::foresee;
 use super::room::{MOST, Room, foresee_room};
 use super::stop::{INTERRUPTED, listen};
@@ -251,9 +251,8 @@ pub fn run_scene(
     if let (Some((t, _)), Some(state)) = (end, &mut kept.state) {
         // Only a part of a resumed run was timed.
         let share = ((t - begun_at) / (t - scene.grid.t_span()[0])).max(1e-3);
-        let taken = Taken { steps: done.steps, largest: done.largest_step };
         let shown = (state.shown()?, written);
-        let check = Check::new(&watch, rows, shown, (t, taken, done.ended_by.is_some()), stop);
+        let check = Check::new(&watch, rows, shown, (t, done.taken, done.ended_by.is_some()), stop);
         kept.bar.now(1.0, "a second run, to estimate the error");
         checked = check_errors(&check, scene, error_check, wall_time_s / share);
     }
@@ -265,7 +264,7 @@ pub fn run_scene(
     let names: Vec<String> = core::iter::once("t".into()).chain(columns.clone()).collect();
     let by_name = |end| names.iter().cloned().zip(with_time(end)).collect();
     let [initial, last] = rows.ends().map_or_else(Default::default, |ends| ends.map(by_name));
-    let drift = watch.drift(&kept.watched, done.steps)?;
+    let drift = watch.drift(&kept.watched, done.taken.steps)?;
     let mut warnings = scene.problem.warnings().to_vec();
     warnings.extend(one_long_step(scene));
     warnings.extend(lost_turns(scene, model.schema()));
@@ -351,7 +350,7 @@ pub fn run_scene(
         ended_by: done.ended_by,
         events,
         dt: scene.adaptive.is_none().then(|| scene.grid.h().abs().min(length(scene))),
-        steps: done.steps,
+        steps: done.taken.steps,
         adaptive: done.chosen,
         side_steps: done.points_within,
         rows: written,

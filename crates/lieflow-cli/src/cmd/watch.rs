@@ -9,6 +9,7 @@ use lieflow::problems::Invariant;
 use lieflow::solve::{Next, Status};
 use lieflow::{Error, RunError};
 
+use super::accuracy::Taken;
 use super::between::Between;
 use super::room::Room;
 use crate::error::CliError;
@@ -126,8 +127,7 @@ impl<'a> Watch<'a> {
         match self.model.drive(&scene.method, plan, watcher) {
             Ok(Outcome { t, status, stats }) => Ok(Done {
                 unsure: stats.unsure_in_words("h_max", status.event()),
-                steps: stats.accepted,
-                largest_step: stats.largest_step,
+                taken: Taken::of(&stats),
                 points_within: Some(stats.points_within),
                 chosen: scene.adaptive.is_some().then_some(Chosen {
                     accepted: stats.accepted,
@@ -148,7 +148,7 @@ impl<'a> Watch<'a> {
                     let told = pole.or_else(|| self.larger_steps(&error)).unwrap_or_default();
                     Some(format!("{error}{told}"))
                 }),
-                steps: error.accepted().unwrap_or(0),
+                taken: Taken { steps: error.accepted().unwrap_or(0), ..Taken::default() },
                 ..Done::default()
             }),
         }
@@ -207,8 +207,7 @@ impl<'a> Watch<'a> {
 pub(super) struct Done {
     pub(super) failure: Option<String>,
     pub(super) interrupted: bool,
-    pub(super) steps: u64,
-    pub(super) largest_step: f64,
+    pub(super) taken: Taken,
     pub(super) points_within: Option<u64>,
     /// The warning about zeros of events that may be missed.
     pub(super) unsure: Option<String>,

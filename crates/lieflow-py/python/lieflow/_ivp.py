@@ -553,6 +553,8 @@ def _finer(settings: dict[str, Any], first: Result, t0: float, seconds: float) -
         found_by += f", in at least {_lieflow.SHORT_STEPS} steps"
         finer["max_step"] = min(settings["max_step"] or short, short)
         finer["first_step"] = settings["first_step"] and min(settings["first_step"], short)
+    if first._hardest is not None:
+        finer["stops"] = sorted({*settings["stops"], first._hardest})  # a pulse that the first run has found
     return found_by, {**finer, "rtol": rtol * factor, "atol": atol * factor}
 
 

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use lieflow::SaveAt;
 use lieflow::catalog::MethodSpec;
 use lieflow::problems::explained_by_rounding;
-use lieflow::solve::{Next, Status};
+use lieflow::solve::{Next, Stats, Status};
 use lieflow_model::problem::{Outcome, Plan, SHORT_STEPS, Watcher, time_to_search};
 use lieflow_model::scene::Scene;
 use lieflow_model::schema::{Component, Observable, Row};
@@ -89,12 +89,25 @@ struct Way {
 const OWN: Way = Way { default: false, factor: 1.0, largest: None };
 
 /// The steps that a run took.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 pub(super) struct Taken {
     /// The number of steps.
     pub(super) steps: u64,
     /// The largest of them.
     pub(super) largest: f64,
+    /// The end of the smallest step that followed a rejected attempt.
+    pub(super) hardest: Option<f64>,
+}
+
+impl Taken {
+    /// The steps of these statistics.
+    pub(super) fn of(stats: &Stats) -> Self {
+        Taken {
+            steps: stats.accepted,
+            largest: stats.largest_step,
+            hardest: stats.after_rejection.map(|[end, _]| end),
+        }
+    }
 }
 
 /// The share of the expected steps that tells that the tolerance chose them, and no limit did.
@@ -274,7 +287,8 @@ impl<'a> Check<'a> {
         }
     }
 
-    /// The plan of a run to time t.
+    /// The plan of a run to time t. A step ends where the motion was the hardest for the run: so it sees a short pulse that
+    /// the run has seen.
     fn plan(&self, way: Way, t: f64) -> Result<Plan<'static>, String> {
         let Way { default, factor, largest } = way;
         let plan = match default {
@@ -284,7 +298,9 @@ impl<'a> Check<'a> {
             }
             false => self.scene().plan_to(t, factor, largest),
         };
-        plan.map_err(|error| error.to_string())
+        let mut plan = plan.map_err(|error| error.to_string())?;
+        plan.stops.extend(self.own.hardest);
+        Ok(plan)
     }
 
     fn limits<'c>(&'c self, cancel: &'c AtomicBool) -> Limits<'c> {
@@ -311,9 +327,7 @@ impl<'a> Check<'a> {
         let outcome = self.watch.model.drive(&self.method(way), plan, &mut kept);
         let Outcome { status, stats, .. } = outcome.map_err(|error| error.to_string())?;
         match status {
-            Status::Finished => {
-                Ok((kept.rows, Taken { steps: stats.accepted, largest: stats.largest_step }))
-            }
+            Status::Finished => Ok((kept.rows, Taken::of(&stats))),
             _ => Err("it was stopped".into()),
         }
     }
