@@ -198,9 +198,9 @@ pub fn run_scene(
         eprintln!("note: {}: {much}", scene.name);
     }
     output::make_folder(folder)?;
-    let (mut state, driver) = match resume {
+    let (mut state, drifts, driver) = match resume {
         true => RunState::open(folder, scene.fingerprint)?,
-        false => (RunState::begin(folder, scene.fingerprint)?, None),
+        false => (RunState::begin(folder, scene.fingerprint)?, Vec::new(), None),
     };
     let summary_path: PathBuf = folder.join(SUMMARY);
     output::remove_summary(folder)?;
@@ -217,6 +217,7 @@ pub fn run_scene(
             }
             false => kept.see(kind, t, schema.row(numbers)),
         })?;
+        kept.watched.iter_mut().zip(drifts).for_each(|(law, drift)| law.go_on_from(drift));
     }
     let begun_at = kept.rows.ends().map_or(scene.grid.t_span()[0], |[_, (t, _)]| t);
     kept.state = Some(state);

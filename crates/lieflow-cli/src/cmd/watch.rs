@@ -426,8 +426,9 @@ impl Watcher for Recorder<'_> {
     fn state(&mut self, bytes: &[u8]) {
         if !self.has_ended() {
             let done = self.flush();
+            let drifts: Vec<_> = self.watched.iter().map(Watched::at_ends_of_steps).collect();
             let done = done.and_then(|()| match &mut self.state {
-                Some(state) => state.save(bytes),
+                Some(state) => state.save(&drifts, bytes),
                 None => Ok(()),
             });
             self.keep(done);

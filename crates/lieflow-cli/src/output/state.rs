@@ -7,7 +7,9 @@
 //! | 1 | the name of the format and its version |
 //! | 2 | what the run is of: the version of the program, and the scene |
 //! | 3 | of `run.rows` at that time: the words of a record, the records, their check sum |
+//! | 1 | the number of the drifts |
 //! | 1 | a check sum of the other words, the driver's too |
+//! | as many | the largest drifts so far at the ends of steps, which no row shows; NaN where there is none |
 //! | the rest | the state of the driver; nothing at the start of a run |
 //!
 //! `run.rows` is what the run showed, in records of one length: what it is ([`Kind`]), t, the numbers of the row.
@@ -28,7 +30,13 @@ const STATE: &str = "run.state";
 pub const ROWS: &str = "run.rows";
 
 /// The name of the format, and its version.
-const FORMAT: u64 = u64::from_le_bytes(*b"lf-run\x00\x02");
+const FORMAT: u64 = u64::from_le_bytes(*b"lf-run\x00\x03");
+
+/// The words before the check sum.
+const HEAD: usize = 7;
+
+/// The largest drift of each law at the ends of steps.
+pub type Drifts = Vec<Option<f64>>;
 
 /// Records are written when they have this many bytes.
 const BYTES: usize = 1 << 16;
@@ -160,28 +168,36 @@ impl RunState {
     /// A file cannot be written, or an old one cannot be removed.
     pub fn begin(folder: &Path, scene: u64) -> Result<Self, CliError> {
         let mut state = Self::new(folder, scene);
-        state.save(&[])?;
+        state.save(&[], &[])?;
         remove_old(&folder.join(ROWS))?;
         Ok(state)
     }
 
-    /// The state of a run of the scene with this fingerprint, and that of its driver; none at its start.
+    /// The state of a run of the scene with this fingerprint, its drifts at the ends of steps, and the state of its driver;
+    /// none at its start.
     ///
     /// # Errors
     /// There is no saved run. The saved run is damaged. It belongs to another scene or to another version of the
     /// program.
-    pub fn open(folder: &Path, scene: u64) -> Result<(Self, Option<Vec<u8>>), CliError> {
+    pub fn open(folder: &Path, scene: u64) -> Result<(Self, Drifts, Option<Vec<u8>>), CliError> {
         let path = folder.join(STATE);
         let bytes = fs::read(&path).map_err(CliError::io("read", &path))?;
         let mut state = Self::new(folder, scene);
-        let (head, driver) = bytes.split_at(bytes.len().min(56));
+        let (head, rest) = bytes.split_at(bytes.len().min(8 * (HEAD + 1)));
         let head: Vec<u64> = words(head).collect();
-        let &[FORMAT, version, of, length, records, rows, check] = &head[..] else {
+        let &[FORMAT, version, of, length, records, rows, drifts, check] = &head[..] else {
             return Err(state.damaged());
         };
-        if check != sum_of(&head[..6], driver) {
+        if check != sum_of(&head[..HEAD], rest) {
             return Err(state.damaged());
         }
+        let of_drifts = usize::try_from(drifts).ok().and_then(|drifts| drifts.checked_mul(8));
+        let Some((drifts, driver)) = of_drifts.and_then(|bytes| rest.split_at_checked(bytes))
+        else {
+            return Err(state.damaged());
+        };
+        let drifts =
+            words(drifts).map(f64::from_bits).map(|x| (!x.is_nan()).then_some(x)).collect();
         if version != state.owner[0] {
             let message = "the run was begun by another version of the program: start it again \
                            without --resume";
@@ -193,7 +209,7 @@ impl RunState {
             return Err(CliError::Message(message.into()));
         }
         state.shown = Shown { length, records, sum: rows };
-        Ok((state, (!driver.is_empty()).then(|| driver.to_vec())))
+        Ok((state, drifts, (!driver.is_empty()).then(|| driver.to_vec())))
     }
 
     fn damaged(&self) -> CliError {
@@ -284,20 +300,23 @@ impl RunState {
         Ok(())
     }
 
-    /// The run is in this state of its driver after what it showed so far.
+    /// The run is in this state of its driver, with these drifts, after what it showed so far.
     ///
     /// # Errors
     /// A file cannot be written: then the state before is there.
-    pub fn save(&mut self, driver: &[u8]) -> Result<(), CliError> {
+    pub fn save(&mut self, drifts: &[Option<f64>], driver: &[u8]) -> Result<(), CliError> {
         self.flush()?;
         // The records that a state counts are on the disk before it.
         let kept = self.file.as_ref().map_or(Ok(()), File::sync_data);
         kept.map_err(CliError::io("write", &self.folder.join(ROWS)))?;
         let Shown { length, records, sum } = self.shown;
-        let head = [FORMAT, self.owner[0], self.owner[1], length, records, sum];
-        let head = head.into_iter().chain([sum_of(&head, driver)]);
+        let [version, scene] = self.owner;
+        let head: [u64; HEAD] = [FORMAT, version, scene, length, records, sum, drifts.len() as u64];
+        let drifts = drifts.iter().flat_map(|x| x.unwrap_or(f64::NAN).to_le_bytes());
+        let rest: Vec<u8> = drifts.chain(driver.iter().copied()).collect();
+        let head = head.into_iter().chain([sum_of(&head, &rest)]);
         let mut bytes: Vec<u8> = head.flat_map(u64::to_le_bytes).collect();
-        bytes.extend_from_slice(driver);
+        bytes.extend(rest);
         write_file(&self.folder.join(STATE), &bytes)
     }
 
@@ -317,6 +336,6 @@ impl RunState {
 }
 
 /// The check sum of a state.
-fn sum_of(head: &[u64], driver: &[u8]) -> u64 {
-    words(driver).fold(head.iter().copied().fold(0, sum), sum)
+fn sum_of(head: &[u64], rest: &[u8]) -> u64 {
+    words(rest).fold(head.iter().copied().fold(0, sum), sum)
 }

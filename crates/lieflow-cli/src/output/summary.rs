@@ -497,6 +497,16 @@ impl Watched {
         self.drift.see_end_of_step(value);
     }
 
+    /// The largest drift at the ends of steps so far.
+    pub fn at_ends_of_steps(&self) -> Option<f64> {
+        self.drift.largest_at_ends_of_steps
+    }
+
+    /// Goes on from the largest drift at the ends of steps of an earlier part of the run.
+    pub fn go_on_from(&mut self, at_ends_of_steps: Option<f64>) {
+        self.drift.largest_at_ends_of_steps = at_ends_of_steps;
+    }
+
     /// What was seen. `steps` is the number of steps of the run.
     pub fn drift(&self, promised: bool, steps: u64) -> Drift {
         Drift {

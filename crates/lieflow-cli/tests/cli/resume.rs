@@ -277,7 +277,7 @@ fn a_damaged_state_is_refused() {
     let mut child = folder.command(&args[..4]).stdout(Stdio::null()).spawn().unwrap();
     until(&mut child, || folder.names("out").iter().any(|name| name == "run.rows"));
     // Until a state with rows is there.
-    until(&mut child, || fs::read(folder.path().join("out/run.state")).unwrap().len() > 56);
+    until(&mut child, || fs::read(folder.path().join("out/run.state")).unwrap().len() > 64);
     child.kill().unwrap();
     child.wait().unwrap();
     for (file, at) in [("run.state", 3), ("run.state", 100), ("run.rows", 100)] {
@@ -294,6 +294,34 @@ fn a_damaged_state_is_refused() {
     }
     folder.lieflow(&args).ok();
     assert_eq!(results(&folder, "out"), *expected);
+}
+
+/// The drifts at the ends of steps are no rows. A run that goes on has those of the part before: the steps are so long that
+/// the probability grows a thousandfold first, and then falls to 0.
+#[test]
+fn the_drifts_at_the_ends_of_steps_go_on() {
+    let folder = Folder::new();
+    let text = "[problem]\nkind = \"schrodinger\"\n\
+                hamiltonian = [[\"0\", \"w\"], [\"w\", \"0\"]]\namplitudes = [1, 0]\n\
+                [problem.let]\nw = \"0.3 + 2.53*exp(-(t/60000)^2)\"\n\
+                [method]\nname = \"rk4\"\n\
+                [time]\nt_span = [0, 3000000]\ndt = 1\n\
+                [output]\nquantities = [\"probability\"]\ninterval = 1000.37\n";
+    folder.write("scene.toml", text);
+    let args = ["run", "scene.toml", "--out", "out", "--no-page", "--error-check", "never"];
+    let drifts = |folder: &Folder| folder.json("out/summary.json")["drift"].clone();
+    folder.lieflow(&args).ok();
+    let whole = drifts(&folder);
+    let largest = whole["probability"]["max_at_ends_of_steps"].as_f64().unwrap();
+    assert!(largest > 100.0, "{whole}");
+    let mut child = folder.command(&args).stdout(Stdio::null()).spawn().unwrap();
+    until(&mut child, || {
+        fs::read(folder.path().join("out/run.state")).is_ok_and(|state| state.len() > 64)
+    });
+    child.kill().unwrap();
+    child.wait().unwrap();
+    folder.lieflow(&[&args[..], &["--resume"]].concat()).ok();
+    assert_eq!(drifts(&folder), whole);
 }
 
 /// With a limit of the size of a file, as on a full disk: the error names the file, what was written stays, and the
