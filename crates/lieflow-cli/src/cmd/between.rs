@@ -1,16 +1,20 @@
-//! What the rows of a run say of its events: were zeros missed, is the function of an event zero all the time?
+//! What the rows of a run say of its events: were zeros missed, is the function of an event zero, or rounding alone?
 
 use lieflow::Direction;
 use lieflow_model::scene::SceneEvent;
 use lieflow_model::schema::Row;
 
-use crate::output::{EventSummary, count_in_words, number};
+use crate::output::{EventSummary, count_in_words, number, rough};
 
 /// The function of an event, of t and a row.
 type ValueOfRow = Box<dyn Fn(f64, Row<'_>) -> f64>;
 
 /// A value that is this part of the largest one may be a zero that is found.
 const NEAR_ZERO: f64 = 1e-9;
+/// A function that stays below this many last digits of the largest number of a row is rounding, if it has many zeros.
+const ROUNDING: f64 = 100.0 * f64::EPSILON;
+/// Rounding has at least one zero in so many rows.
+const SELDOM: u64 = 8;
 
 /// Number of gaps that are checked, and of points in each.
 const LOOKED_AT: u64 = 64;
@@ -33,15 +37,29 @@ pub(super) struct Between {
     /// The rows before which zeros were missed.
     missed: u64,
     rows: u64,
-    /// The largest absolute value.
+    /// The largest absolute value at a row.
     largest: f64,
+    /// The largest absolute value at a row, at the end of a step, or at a point that was looked at.
+    largest_anywhere: f64,
+    /// The largest number of the rows.
+    size: f64,
 }
 
 impl Between {
     /// No row yet. `value` is the function of the event.
     pub(super) fn new(event: &SceneEvent, value: ValueOfRow) -> Self {
         let (name, direction) = (event.name.clone(), event.direction);
-        Between { name, direction, value, before: None, missed: 0, rows: 0, largest: 0.0 }
+        Between {
+            name,
+            direction,
+            value,
+            before: None,
+            missed: 0,
+            rows: 0,
+            largest: 0.0,
+            largest_anywhere: 0.0,
+            size: 0.0,
+        }
     }
 
     /// The next row. The run has had `zeros` zeros up to there.
@@ -49,6 +67,8 @@ impl Between {
         let value = (self.value)(t, row);
         self.rows += 1;
         self.largest = self.largest.max(value.abs());
+        self.largest_anywhere = self.largest_anywhere.max(self.largest);
+        self.size = row.values().iter().fold(self.size, |size, x| size.max(x.abs()));
         if let Some(before) = self.before
             && self.rows <= LOOKED_AT
         {
@@ -64,12 +84,19 @@ impl Between {
         self.before = Some(Before { t, value, zeros });
     }
 
+    /// The end of a step.
+    pub(super) fn see_end_of_step(&mut self, t: f64, row: Row<'_>) {
+        self.largest_anywhere = self.largest_anywhere.max((self.value)(t, row).abs());
+    }
+
     /// Looks at the function of t between two rows, with the columns of the second one: it may swing fast by itself.
     fn look_between(&mut self, before: f64, (t, row): (f64, Row<'_>), found: u64) {
         let at = |k: u32| before + (t - before) * f64::from(k) / f64::from(POINTS);
-        let signs = (0..=POINTS).map(|k| (self.value)(at(k), row) > 0.0);
-        let signs: Vec<bool> = signs.collect();
-        let swings = signs.windows(2).filter(|pair| pair[0] != pair[1]).count() as u64;
+        let values: Vec<f64> = (0..=POINTS).map(|k| (self.value)(at(k), row)).collect();
+        let swings =
+            values.windows(2).filter(|pair| (pair[0] > 0.0) != (pair[1] > 0.0)).count() as u64;
+        self.largest_anywhere =
+            values.iter().fold(self.largest_anywhere, |most, x| most.max(x.abs()));
         // In one direction every second zero counts, and the columns move a little.
         if swings > 2 * found + 2 {
             self.missed += 1;
@@ -81,9 +108,14 @@ impl Between {
         self.missed > 0
     }
 
+    /// Are the values of the function rounding alone, with this many zeros?
+    pub(super) fn is_rounding(&self, zeros: u64) -> bool {
+        self.rows > 1 && self.largest_anywhere <= ROUNDING * self.size && SELDOM * zeros > self.rows
+    }
+
     /// The warning about zeros that were missed.
-    pub(super) fn warning(&self) -> Option<String> {
-        self.has_missed().then(|| {
+    pub(super) fn warning(&self, zeros: u64) -> Option<String> {
+        (self.has_missed() && !self.is_rounding(zeros)).then(|| {
             format!(
                 "event {}: zeros were missed, before {} of the rows. Its function changes faster than the steps: take \
                  shorter steps (dt, or h_max)",
@@ -93,11 +125,18 @@ impl Between {
         })
     }
 
-    /// The note about an event that is zero all the time, that never comes, or whose `stop_after` was not reached.
+    /// The note about an event that is zero or rounding all the time, that never comes, or whose `stop_after` was not
+    /// reached.
     pub(super) fn note(&self, seen: &EventSummary, stop_after: Option<u64>) -> Option<String> {
         let name = &self.name;
         if self.largest == 0.0 && self.rows > 1 {
             return Some(format!("event `{name}`: its function is zero all the time"));
+        }
+        if self.is_rounding(seen.count) {
+            let largest = rough(self.largest_anywhere);
+            return Some(format!(
+                "event `{name}`: its function is zero up to rounding, at most {largest}. Its zeros have no meaning"
+            ));
         }
         match (seen.count, stop_after) {
             (count, Some(stop_after)) => Some(format!(

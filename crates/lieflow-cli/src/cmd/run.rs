@@ -270,11 +270,15 @@ pub fn run_scene(
     warnings.extend(one_long_step(scene));
     warnings.extend(lost_turns(scene, model.schema()));
     let by_events = kept.between.iter().zip(&scene.events).zip(&kept.seen);
-    warnings.extend(by_events.clone().filter_map(|((between, _), _)| between.warning()));
+    warnings
+        .extend(by_events.clone().filter_map(|((between, _), seen)| between.warning(seen.count)));
+    let are_rounding: Vec<bool> =
+        by_events.clone().map(|((between, _), seen)| between.is_rounding(seen.count)).collect();
     let is_end = |event: &SceneEvent| done.ended_by.as_ref() == Some(&event.name);
     let mut ends_wrong =
         by_events.clone().any(|((between, event), _)| is_end(event) && between.has_missed());
-    warnings.extend(done.unsure);
+    let is_any_more = are_rounding.iter().any(|is_rounding| !is_rounding);
+    warnings.extend(done.unsure.filter(|_| is_any_more));
     let mut notes = scene.notes();
     let ended = done.ended_by.is_some();
     notes.extend(by_events.filter_map(|((between, event), seen)| {
@@ -296,11 +300,16 @@ pub fn run_scene(
             let numbers = rows.ends().map_or(0.0, |[(_, row), _]| largest(row.values()));
             let moving = drift.iter().filter(|(_, drift)| drift.is_of_the_motion(error, numbers));
             warnings.extend(moving.map(no_constant));
+            let other_zeros = checked.other_zeros.into_iter().zip(&are_rounding);
+            warnings.extend(
+                other_zeros.filter(|(_, is_rounding)| !**is_rounding).filter_map(|(told, _)| told),
+            );
             warnings.extend(checked.warnings);
             let mut zeros = scene.events.iter().zip(checked.wrong_zeros);
             ends_wrong |= zeros.any(|(event, are_wrong)| is_end(event) && are_wrong);
-            for (event, error) in events.iter_mut().zip(checked.time_errors) {
-                event.time_error = error.filter(|_| event.count > 0);
+            let times = checked.time_errors.into_iter().zip(&are_rounding);
+            for (event, (error, is_rounding)) in events.iter_mut().zip(times) {
+                event.time_error = error.filter(|_| event.count > 0 && !is_rounding);
             }
             (Some(checked.accuracy), None)
         }

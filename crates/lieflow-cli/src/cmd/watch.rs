@@ -411,8 +411,9 @@ impl Watcher for Recorder<'_> {
         }
     }
 
-    fn end_of_step(&mut self, _t: f64, row: Row<'_>) {
+    fn end_of_step(&mut self, t: f64, row: Row<'_>) {
         self.watch.see_end_of_step(row, &mut self.watched);
+        self.between.iter_mut().for_each(|between| between.see_end_of_step(t, row));
     }
 
     fn progress(&mut self, t: f64) {

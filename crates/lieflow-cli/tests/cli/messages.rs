@@ -61,6 +61,9 @@ fn events_that_never_come_or_are_missed_are_told() {
     let told = event("0*t", "");
     assert!(told.contains("note: event `z`: its function is zero all the time"), "{told}");
     assert!(told.contains("event z: never\n"), "{told}");
+    let told = event("sqrt(m1^2 + m2^2 + m3^2) - sqrt(9.04)", "").replace('\n', " ");
+    let rounding = told.contains("note: event `z`: its function is zero up to rounding, at most");
+    assert!(rounding && !told.contains("WARNING"), "{told}");
     let told = event("t - 100", "");
     assert!(told.contains("note: event `z`: no zero"), "{told}");
     let told = event("t - 1", "stop_after = 2");

@@ -72,6 +72,8 @@ pub(super) struct Checked {
     pub(super) time_errors: Vec<Option<f64>>,
     /// Of each event: has the other motion other zeros?
     pub(super) wrong_zeros: Vec<bool>,
+    /// The warning about each event that has another number of zeros there.
+    pub(super) other_zeros: Vec<Option<String>>,
     /// What a reader should know.
     pub(super) warnings: Vec<String>,
 }
@@ -166,17 +168,21 @@ impl<'a> Check<'a> {
                 self.by_another(OWN, self.own, |way| self.beside(way, &times))?
             }
         };
-        let zeros = || self.scene().events.iter().zip(&apart.events);
-        let warnings = zeros().filter(|(_, zeros)| !zeros.agree()).map(|(event, zeros)| {
+        let zeros = self.scene().events.iter().zip(&apart.events);
+        let other_zeros = zeros.map(|(event, zeros)| {
+            if zeros.agree() {
+                return None;
+            }
             let others = match self.is_exact {
                 true => format!("at least {} in the exact motion", zeros.other.sure),
                 false => format!("{} in the second run", zeros.other.possible),
             };
-            format!(
+            Some(format!(
                 "event `{}` has {} zeros in this run, and {others}: take smaller steps or a smaller tolerance",
                 event.name, zeros.own.possible
-            )
+            ))
         });
+        let other_zeros = other_zeros.collect();
         let are_wrong = |zeros: &ZerosApart| !zeros.agree() || !zeros.distance.is_finite();
         let wrong_zeros = apart.events.iter().map(are_wrong).collect();
         let time_error = |zeros: &ZerosApart| {
@@ -184,8 +190,7 @@ impl<'a> Check<'a> {
             let rounding = f64::EPSILON * self.run.t_span[0].abs().max(self.run.t_span[1].abs());
             (!are_wrong(zeros)).then(|| (zeros.distance * share).max(rounding))
         };
-        let (mut accuracy, mut warnings) =
-            (self.judge(found_by, &apart, share, clock), warnings.collect::<Vec<_>>());
+        let (mut accuracy, mut warnings) = (self.judge(found_by, &apart, share, clock), Vec::new());
         let mut time_errors: Vec<_> = apart.events.iter().map(time_error).collect();
         if let Some(moved) = self.moved_by_last_digits() {
             accuracy = accuracy.with_digits(moved.relative().max(f64::EPSILON));
@@ -205,7 +210,7 @@ impl<'a> Check<'a> {
             (accuracy, time_errors) = (other, vec![None; time_errors.len()]);
             warnings.push(warning);
         }
-        Ok(Checked { accuracy, time_errors, wrong_zeros, warnings })
+        Ok(Checked { accuracy, time_errors, wrong_zeros, other_zeros, warnings })
     }
 
     /// The size of short steps, where steps are chosen by their error and may be larger.
