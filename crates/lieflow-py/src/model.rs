@@ -4,12 +4,13 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use lieflow::catalog::{MethodSpec, all_methods};
-use lieflow::solve::{Next, Status};
+use lieflow::solve::Next;
 use lieflow::{RunError, SaveAt};
 use lieflow_model::formula::Which;
 use lieflow_model::kinds::{KINDS, named};
 use lieflow_model::problem::{
-    self, CurvePlace, EventPlan, Kept, KeyInfo, Layer, Orders, Plan, StepByStep, Steps, Watcher,
+    self, CurvePlace, EventPlan, Kept, KeyInfo, Layer, Orders, Outcome, Plan, StepByStep, Steps,
+    Watcher,
 };
 use lieflow_model::reader::{ReadError, Shape, Tree};
 use lieflow_model::scene::{Columns, OnRows, RowFormula};
@@ -302,7 +303,7 @@ impl Model {
         (steps, save): (Steps, SaveAt),
         settings: &Settings,
         watch: &mut Watch,
-    ) -> (Result<Status, RunError>, Option<Curve>) {
+    ) -> (Result<Outcome, RunError>, Option<Curve>) {
         let (events, callback, raised, seen) = watch.parts();
         let mut curve = None;
         let plan = Plan {
@@ -317,7 +318,7 @@ impl Model {
         let mut watcher = OfModel { callback, raised, seen };
         let done = self.model.drive(spec, plan, &mut watcher);
         let curve = curve.map(|curve| Curve::of_rows(curve, self.width()));
-        (done.map(|outcome| outcome.status), curve)
+        (done, curve)
     }
 }
 
@@ -390,12 +391,25 @@ impl Model {
             let (steps, save) = (steps.clone(), save.clone());
             self.drive((&spec, start.clone()), (steps, save), &settings, &mut watch)
         };
-        let (status, curve) = if attached { run() } else { py.detach(run) };
+        let (done, curve) = if attached { run() } else { py.detach(run) };
+        let (status, end) = match done {
+            Ok(Outcome { status, state, row, .. }) => (Ok(status), Some((state, row))),
+            Err(error) => (Err(error), None),
+        };
         let result = watch.seen.into_dict(py, &raised, status, (&shape, LONGEST), Some(&steps))?;
         let lost = self.problem.formula().and_then(|formula| formula.lost(Which::First));
         result.set_item("lost", lost.map(|lost| lost.to_string()))?;
         result.set_item("curve", curve.map(|curve| Py::new(py, curve)).transpose()?)?;
+        let arrays = |(state, mut row): (Vec<f64>, Vec<f64>)| {
+            row.truncate(self.width());
+            (PyArray1::from_vec(py, row), PyArray1::from_vec(py, state))
+        };
+        result.set_item("end", end.map(arrays))?;
         Ok(result)
+    }
+    /// The name of the form of the problem that a method runs on. The numbers of a state are those of one form.
+    fn form(&self, py: Python<'_>, method: &str) -> PyResult<&'static str> {
+        Ok(self.model.problem_type(&self.method(py, method)?.0))
     }
     /// The rows of the exact motion at these times; None where it is not known.
     fn exact<'py>(

@@ -85,8 +85,53 @@ def test_numbers_of_another_start():
     assert np.allclose(r.momentum_body[-1], [1, 0, 0])
     with pytest.raises(lf.ArgumentError, match="y0: length 2, expected 3"):
         lf.solve_ivp(body, (0, 1), [1.0, 0.0], quantities="momentum_body")
-    with pytest.raises(lf.ArgumentError, match="y0: quantities by name, expected the numbers of a state"):
-        lf.solve_ivp(body, (1, 2), r.y_end, quantities="momentum_body")
+    with pytest.raises(lf.ArgumentError, match="y0: quantities by name, expected the y_end of a run, the numbers of a state"):
+        lf.solve_ivp(body, (1, 2), dict(r.y_end), quantities="momentum_body")
+
+
+@pytest.mark.parametrize("name", lf.scenes())
+def test_a_run_goes_on_from_the_end_of_another(name):
+    scene = lf.load(name)
+    problem, (start, end) = scene.problem, scene.t_span
+    end = start + (min(end, start + 10.0) - start) / 10
+    middle = start + 0.4 * (end - start)
+    control = {"rtol": 1e-11, "atol": 1e-11, "method": "rkmk dop853 exp"}
+    whole = lf.solve_ivp(problem, (start, end), t_eval=[start], **control).check()
+    first = lf.solve_ivp(problem, (start, middle), t_eval=[start], **control).check()
+    second = lf.solve_ivp(problem, (middle, end), pickle.loads(pickle.dumps(first.y_end)), **control).check()
+    for quantity in whole.y_end:
+        one, two = whole.y_end[quantity], second.y_end[quantity]
+        assert one.shape == whole.y[quantity].shape[1:]
+        assert np.abs(one - two).max() <= 1e-8 * max(1.0, np.abs(one).max()), quantity
+    assert np.array_equal(second.y_end[quantity], second.y[quantity][-1])
+
+
+def test_the_end_of_another_run_is_refused():
+    body = lf.RigidBody(inertia=[1.0, 2.0, 3.0], momentum_body=[0.0, 1.0, 3.0])
+    end = lf.solve_ivp(body, (0, 1), quantities="momentum_body").y_end
+    with pytest.raises(lf.ArgumentError, match="expected the end of a run of 'rigid-body' with the same quantities"):
+        lf.solve_ivp(body, (1, 2), end, quantities="attitude")
+    with pytest.raises(lf.ArgumentError, match="y0: the end of another run, of 'rigid-body', expected"):
+        lf.solve_ivp(lf.Spin(field=[0, 0, 1], rate=0, moment=[1, 0, 0]), (1, 2), end)
+    # The body may be another one, and a run that is taken step by step goes on, too.
+    other = body.replace(inertia=[1.0, 2.0, 2.5])
+    run = lf.Integrator(other, None, (1, 2), end, quantities="momentum_body")
+    assert np.array_equal(run.y.momentum_body, end.momentum_body)
+    assert np.array_equal(end.momentum_body, lf.solve_ivp(other, (1, 2), end, quantities="momentum_body").momentum_body[0])
+
+
+def test_a_quantum_state_has_length_one():
+    levels = lf.Schrodinger(hamiltonian=[["0", "0.3"], ["0.3", "1"]], amplitudes=[1.0, 0.0])
+    with pytest.raises(lf.ArgumentError, match=r"\|y0\|: 2, expected 1, the length of a state"):
+        lf.solve_ivp(levels, (0, 1), [2.0, 0.0])
+    with pytest.raises(lf.ArgumentError, match=r"\|y0\|: 2"):
+        lf.Integrator(levels, None, (0, 1), [0.0, 2.0j])
+    half = np.sqrt([0.5, 0.5])
+    assert np.allclose(lf.solve_ivp(levels, (0, 1), half, quantities="populations").populations[0], 0.5)
+    mixed = lf.DensityMatrix(hamiltonian=[["0", "0.3"], ["0.3", "1"]], density=[[1.0, 0.0], [0.0, 0.0]])
+    with pytest.raises(lf.ArgumentError, match="the trace of y0: 2, expected 1, that of a density matrix"):
+        lf.solve_ivp(mixed, (0, 1), np.eye(2))
+    assert np.allclose(lf.solve_ivp(mixed, (0, 1), np.eye(2) / 2, quantities="populations").populations, 0.5)
 
 
 def test_a_callback_and_an_exception():

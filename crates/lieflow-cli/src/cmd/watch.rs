@@ -125,7 +125,7 @@ impl<'a> Watch<'a> {
         let scene = self.scene;
         scene.forget_losses();
         match self.model.drive(&scene.method, plan, watcher) {
-            Ok(Outcome { t, status, stats }) => Ok(Done {
+            Ok(Outcome { t, status, stats, .. }) => Ok(Done {
                 unsure: stats.unsure_in_words("h_max", status.event()),
                 taken: Taken::of(&stats),
                 points_within: Some(stats.points_within),

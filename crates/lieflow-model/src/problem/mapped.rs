@@ -87,7 +87,9 @@ impl Mapped<'_> {
         });
         let plan = Plan { events: events.collect(), ..plan };
         let mut of_base = OfBase { mapped: self, watcher, numbers: Vec::new() };
-        self.base.drive(method, plan, &mut of_base)
+        let done = self.base.drive(method, plan, &mut of_base)?;
+        of_base.fill(done.t, self.base.schema().row(&done.row));
+        Ok(Outcome { row: of_base.numbers, ..done })
     }
 
     /// The values at the end of a span by the exact solution of the base.

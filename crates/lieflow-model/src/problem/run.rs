@@ -11,7 +11,7 @@ use lieflow::groups::LieAlgebra;
 use lieflow::methods::{AnyMethod, Facts, Method, Within};
 use lieflow::names::same;
 use lieflow::problems::PointOf;
-use lieflow::solve::{Interpolant, Interrupted, Next, Status};
+use lieflow::solve::{Interpolant, Interrupted, Next, Solution, Status};
 use lieflow::space::Numbers;
 use lieflow::{Action, Direction, Error, Event, RunError, SaveAt, Solve, Stats};
 
@@ -236,6 +236,10 @@ pub struct Outcome {
     pub status: Status,
     /// What it did.
     pub stats: Stats,
+    /// The numbers of the state at the end. Another run may start from them ([`Plan::start`]).
+    pub state: Vec<f64>,
+    /// The numbers of the row at the end.
+    pub row: Vec<f64>,
 }
 
 /// What is known of a method on a problem.
@@ -339,17 +343,14 @@ pub(crate) fn curve_by<P: Runnable>(
 pub(crate) fn drive_by<P: Runnable>(
     spec: &MethodSpec,
     problem: &Arc<P>,
-    mut y: PointOf<P>,
+    y: PointOf<P>,
     plan: Plan<'_>,
     RowsOf { schema, row_of, shared }: RowsOf<'_, P>,
     watcher: &mut dyn Watcher,
 ) -> Result<Outcome, RunError> {
     let method = Arc::new(problem.method(spec)?);
     let Plan { steps, save, times_by_steps, stops, .. } = plan;
-    let Plan { events, max_steps, cancel, checkpoints, resume, start, curve, .. } = plan;
-    if let Some(numbers) = start {
-        set_numbers(&mut y, "y0", &numbers)?;
-    }
+    let Plan { events, max_steps, cancel, checkpoints, resume, curve, .. } = plan;
     let (watcher, numbers) = (RefCell::new(watcher), RefCell::new(Vec::new()));
     let mut branches = Branches::new(schema, steps.t_span());
     let resume = resume.map(|bytes| branches.take_from(bytes));
@@ -453,8 +454,9 @@ pub(crate) fn drive_by<P: Runnable>(
     if let Some(end) = end {
         watcher.borrow_mut().end(end.t, &end.stats);
     }
-    let done = done?;
-    Ok(Outcome { t: done.t, status: done.status, stats: done.stats })
+    let Solution { t, mut y, status, stats, .. } = done?;
+    fill(t, &y);
+    Ok(Outcome { t, status, stats, state: numbers_of(&mut y), row: numbers.take() })
 }
 
 /// The numbers of a point, in the order of [`Numbers`].

@@ -14,7 +14,7 @@ use super::operations::{CountOnVectors, Counting, operations_by};
 use super::quantity::{Moment, Quantity, Value};
 use super::run::{
     Fit, Layer, Orders, Outcome, Plan, RowCurve, RowsOf, Runnable, SharedRowOf, Steps, Watcher,
-    curve_by, drive_by, fits_by, numbers_of, orders_by,
+    curve_by, drive_by, fits_by, numbers_of, orders_by, set_numbers,
 };
 use super::stepper::{Points, StepByStep, Stepper, stepper_by};
 use crate::formula::Formula;
@@ -65,6 +65,13 @@ pub(crate) trait System: Clone + Debug + Send + Sync + 'static {
     /// See [`Problem::knots`](super::Problem::knots).
     fn knots(&self, t_span: [f64; 2]) -> Option<Vec<f64>> {
         self.formula()?.samples().map(|samples| samples.knots(t_span).collect())
+    }
+    /// Checks a state that a run starts from in place of its own, beyond what the group and the action ask for.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`], about `y0`.
+    fn check_state(&self, _y: &PointOf<Self>) -> Result<(), Error> {
+        Ok(())
     }
     /// y at the end of a span, where it is known.
     fn exact(&self, _t_span: [f64; 2]) -> Option<Result<PointOf<Self>, Error>> {
@@ -166,6 +173,16 @@ impl<S: System> On<S> {
         self.ready.get_or_init(ready).as_ref().map_err(Error::clone)
     }
 
+    /// The start, or the point of these numbers.
+    fn start_at(&self, numbers: Option<&[f64]>) -> Result<PointOf<S>, Error> {
+        let mut y = self.ready()?.1.clone();
+        if let Some(numbers) = numbers {
+            set_numbers(&mut y, "y0", numbers)?;
+            self.system.check_state(&y)?;
+        }
+        Ok(y)
+    }
+
     /// What appends the values of these quantities, for what outlives a run that starts at t0.
     fn shared(&self, quantities: &[usize], t0: f64) -> Box<SharedRowOf<S::Problem>> {
         let (system, quantities) = (self.system.clone(), quantities.to_vec());
@@ -216,7 +233,7 @@ impl<S: System> Run for On<S> {
         plan: Plan<'_>,
         watcher: &mut dyn Watcher,
     ) -> Result<Outcome, RunError> {
-        let (problem, start) = self.ready()?;
+        let problem = &self.ready()?.0;
         let [t0, _] = plan.steps.t_span();
         let row_of = |t: f64, y: &PointOf<S>, numbers: &mut Vec<f64>| {
             values_of(&self.system, asked.quantities, Moment::of_run(t, t0), y, numbers);
@@ -224,7 +241,8 @@ impl<S: System> Run for On<S> {
         };
         let shared = || self.shared(asked.quantities, t0);
         let rows = RowsOf { schema: asked.schema, row_of: &row_of, shared: &shared };
-        drive_by(method, problem, start.clone(), plan, rows, watcher)
+        let start = self.start_at(plan.start.as_deref())?;
+        drive_by(method, problem, start, plan, rows, watcher)
     }
     fn stepper(
         &self,
@@ -232,9 +250,10 @@ impl<S: System> Run for On<S> {
         method: &MethodSpec,
         steps: StepByStep<'_>,
     ) -> Result<Box<dyn Stepper>, RunError> {
-        let (problem, y) = self.ready()?;
+        let problem = &self.ready()?.0;
         let points = Points::in_order(self.shared(asked.quantities, steps.steps.t_span()[0]));
-        stepper_by(method, problem, y.clone(), steps, points)
+        let y = self.start_at(steps.start)?;
+        stepper_by(method, problem, y, StepByStep { start: None, ..steps }, points)
     }
     fn curve(
         &self,

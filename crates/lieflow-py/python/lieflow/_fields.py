@@ -42,6 +42,17 @@ class Quantities(dict[str, NDArray[Any]]):
         return (Quantities, (dict(self),))
 
 
+class State(Quantities):
+    """The quantities at the end of a run of a problem. Another run goes on from them: ``y0=result.y_end``."""
+
+    def __init__(self, quantities: dict[str, NDArray[Any]], numbers: NDArray[np.float64], of: tuple[str, str]) -> None:
+        super().__init__(quantities)
+        self._numbers, self._of = numbers, of
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (State, (dict(self), self._numbers, self._of))
+
+
 class CFunction:
     """The address of a C function as f: ``void f(double t, const double *y, double *v, const double *p)``.
 

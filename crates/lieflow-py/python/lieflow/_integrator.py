@@ -77,11 +77,12 @@ class Integrator:
         self._join: Parts | ComplexPoints | None = None
         if isinstance(problem, Problem):
             asked = problem.asked(quantities)
-            start = problem._start(y0)
             model = problem._model(asked)
+            method = method or problem.method
+            start = problem._start(y0, model, method)
             self._split = problem._layout(asked).split
             settings["stops"] = sorted({*settings["stops"], *problem._problem.knots(span)})
-            self._run = model.stepper(method or problem.method, span, start, settings)
+            self._run = model.stepper(method, span, start, settings)
         else:
             if quantities is not None:
                 raise ArgumentError("quantities", repr(quantities), "none: only a problem has quantities")

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _lieflow
 from ._arrays import finite, kept, number, real, what, whole
 from ._errors import ArgumentError, RunError
-from ._fields import CFunction, Field, Parts, Quantities, Samples, address
+from ._fields import CFunction, Field, Parts, Quantities, Samples, State, address
 from ._groups import Group
 from ._problems import Problem
 from ._result import Layout, OdeSolution, Result, warn_of_events
@@ -362,8 +362,9 @@ def solve_ivp(
     t_span : (float, float)
         From when to when, forward or backward.
     y0 : array_like
-        The start. It must be on M to 1e-6. Of Parts it is a dict. A problem has its own; here are then the numbers of
-        another state, in the order of :attr:`lieflow.Integrator.state`, or the complex array of one that is complex.
+        The start. It must be on M to 1e-6. Of Parts it is a dict. A problem has its own; here is then the ``y_end`` of
+        another run, the numbers of a state in the order of :attr:`lieflow.Integrator.state`, or the complex array of one
+        that is complex.
     method : str, optional
         A method of lieflow with its tableau and its map. The default is "rkmk dop853 exp"; of a problem its
         own, where ``dense_output`` can keep the points within its steps.
@@ -584,18 +585,17 @@ def _of_problem(
     knots = problem._problem.knots(span)
     if knots:
         settings = {**settings, "stops": sorted({*settings["stops"], *knots})}
-    start = problem._start(y0)
+    start = problem._start(y0, model, method)
     clock = perf_counter()
     found = model.solve(method, span, start, settings, times, parts, told)
     seconds = perf_counter() - clock
     warn_of_events(found, 3)
-    curve, lost, rows = found.pop("curve"), found.pop("lost"), found["y"]
+    curve, lost, end, rows = found.pop("curve"), found.pop("lost"), found.pop("end"), found["y"]
     if lost is not None and found["status"] < 0:
         found["message"] += f": {lost}"
     found["y"] = layout.split(rows)
     found["y_events"] = [layout.split(y) for y in found["y_events"]]
-    at_end = len(rows) > 0 and found["t"][-1] == found["t_end"]
-    found["y_end"] = layout.split(rows[-1]) if at_end else None
+    found["y_end"] = None if end is None else State(layout.split(end[0]), end[1], problem._form(model, method))
     sol = None if curve is None else OdeSolution(curve, (problem, method, asked, texts), layout)
     if sol is not None and found["status"] == 1 and found["t_end"] != span[1]:
 

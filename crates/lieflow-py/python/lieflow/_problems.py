@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _lieflow
 from ._arrays import finite, kept, own, real
 from ._errors import ArgumentError
-from ._fields import Quantities, Samples
+from ._fields import Quantities, Samples, State
 from ._result import Layout
 from ._unitary import ComplexState, complex_numbers
 from ._values import is_complex, part, plain
@@ -185,12 +185,24 @@ class Problem:
             self._complex = (None if is_real else ComplexState(tuple(shape), size, model.by_parts),)
         return self._complex[0]
 
-    def _start(self, y0: Any) -> Array | None:
-        """The numbers of another state: these, or a complex array."""
+    def _form(self, model: Any, method: str) -> tuple[str, str]:
+        """What the numbers of a state are of: the kind, and the form of the model that the method runs on."""
+        return type(self).kind, model.form(method)
+
+    def _start(self, y0: Any, model: Any, method: str) -> Array | None:
+        """The numbers of another state: the end of a run, these numbers, or a complex array."""
         if y0 is None:
             return None
+        if isinstance(y0, State):
+            if y0._of != self._form(model, method):
+                expected = f"the end of a run of {type(self).kind!r} with the same quantities"
+                raise ArgumentError("y0", f"the end of another run, of {y0._of[0]!r}", expected)
+            return y0._numbers
         if isinstance(y0, dict):
-            expected = "the numbers of a state, as lieflow.Integrator.state has them, or replace() with the keys of a start"
+            expected = (
+                "the y_end of a run, the numbers of a state, as lieflow.Integrator.state has them, or replace() with the keys "
+                "of a start"
+            )
             raise ArgumentError("y0", "quantities by name", expected)
         state = self._complex_state()
         if state is None:

@@ -194,7 +194,7 @@ class Result:
     largest_step : float
         The largest accepted step.
     t_end, y_end : float, array
-        The end of the run. ``y_end`` is None for a problem whose last row is not at the end.
+        The end of the run. Of a problem ``y_end`` may be the ``y0`` of another run; it is None if the run failed.
     drift : dict
         Of a problem: the largest |value − value at the start| of each invariant, over the output. The start is that of the
         run, also where the output begins later.

@@ -2,6 +2,7 @@
 //! see [`von_neumann`].
 
 use lieflow::dense::{norm, squared_norm};
+use lieflow::groups::MEMBERSHIP;
 use lieflow::problems::{density_matrix, populations_of, von_neumann};
 
 use super::super::entries::{ROUNDING, eigenvalues, numbered, symmetric, upper_columns};
@@ -132,6 +133,17 @@ impl System for Mixture {
     }
     fn formula(&self) -> Option<&Formula> {
         self.hamiltonian.formula()
+    }
+    fn check_state(&self, rho: &Mat<f64>) -> Result<(), Error> {
+        let trace: f64 = populations_of(rho).iter().sum();
+        match (trace - 1.0).abs() <= MEMBERSHIP {
+            true => Ok(()),
+            false => Err(Error::OutOfRange {
+                arg: "the trace of y0".into(),
+                value: trace,
+                expected: "1, that of a density matrix".into(),
+            }),
+        }
     }
     fn modelled(&self) -> String {
         format!("density matrix of {} levels, real and imaginary parts", self.hamiltonian.n)

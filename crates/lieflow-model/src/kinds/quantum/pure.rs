@@ -2,6 +2,7 @@
 //! [`schrodinger`](fn@schrodinger).
 
 use lieflow::dense::squared_norm;
+use lieflow::groups::MEMBERSHIP;
 use lieflow::problems::{populations, schrodinger};
 
 use super::super::entries::numbered;
@@ -79,6 +80,17 @@ impl System for Levels {
     }
     fn formula(&self) -> Option<&Formula> {
         self.hamiltonian.formula()
+    }
+    fn check_state(&self, psi: &Mat<f64>) -> Result<(), Error> {
+        let length = squared_norm(psi.as_ref()).sqrt();
+        match (length - 1.0).abs() <= MEMBERSHIP {
+            true => Ok(()),
+            false => Err(Error::OutOfRange {
+                arg: "|y0|".into(),
+                value: length,
+                expected: "1, the length of a state".into(),
+            }),
+        }
     }
     fn modelled(&self) -> String {
         format!("state of {} levels, real and imaginary parts", self.hamiltonian.n)
