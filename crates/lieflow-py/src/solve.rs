@@ -78,6 +78,11 @@ impl Space {
     fn value(&self) -> Vec<usize> {
         self.space.value().to_vec()
     }
+    /// True if methods for linear equations are there.
+    #[getter]
+    fn has_linear_methods(&self) -> bool {
+        self.space.has_linear_methods()
+    }
     /// The curve of these numbers. f is not called.
     fn curve(
         &self,
@@ -241,7 +246,11 @@ impl Ready {
         };
         let refuse = |error: Error| refused(py, "fun", &error);
         let problem = space.problem(field, settings.linear).map_err(refuse)?;
-        let (spec, orders) = fitting.method(py, method, |spec| problem.orders(spec))?;
+        let orders = |spec: &MethodSpec| {
+            space.check_linear(spec)?;
+            problem.orders(spec)
+        };
+        let (spec, orders) = fitting.method(py, method, orders)?;
         let steps = settings.steps(py, t_span, (orders, || y0.into()), "fun")?;
         Ok(Ready { problem, spec, steps, attached })
     }

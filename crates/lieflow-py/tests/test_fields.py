@@ -266,3 +266,27 @@ def test_a_lagrangian_start_is_symmetric():
     assert lf.solve_ivp(f, (0, 1), np.eye(2), **space).success
     with pytest.raises(lf.ArgumentError, match="symmetric"):
         lf.solve_ivp(f, (0, 1), [[1.0, 0.2], [0.1, 1.0]], **space)
+
+
+def test_a_wrong_formula_of_let_is_named():
+    wrong = {"a": "sin(t)", "b": "cos(q)"}
+    with pytest.raises(lf.ArgumentError) as caught:
+        lf.solve_ivp(lf.Field("SO(3)", ["a", "b", "0"], let=wrong), (0, 1), np.eye(3), frame="body")
+    assert caught.value.argument == "let.b" and "`q`" in str(caught.value)
+    with pytest.raises(lf.ArgumentError) as caught:
+        lf.solve_ivp(lf.Field("SO(3)", ["a", "b", "c"], let={"a": "sin(t", "b": "1"}), (0, 1), np.eye(3), frame="body")
+    assert caught.value.argument == "let.a" and len(caught.value.others) == 1
+
+
+def test_spaces_without_methods_for_linear_equations_are_told():
+    expected = "methods for linear equations are for SO"
+    quaternion = dict(group="S3", frame="body", linear=True, method="magnus4")
+    with pytest.raises(lf.ArgumentError, match=expected):
+        lf.solve_ivp(lambda t: [0, 0, 1], (0, 1), [1, 0, 0, 0], **quaternion)
+    parts = lf.Parts(R="rotation", x="vector")
+    with pytest.raises(lf.ArgumentError, match=expected):
+        lf.solve_ivp(lambda t: {"R": [0, 0, 1], "x": [0, 0, 1]}, (0, 1), {"R": np.eye(3), "x": [1, 0, 0]}, group=parts,
+                     frame="body", linear=True, method="cfm4-2")
+    # Other methods run.
+    run = lf.solve_ivp(lambda t: [0, 0, 1], (0, 1), [1, 0, 0, 0], **{**quaternion, "method": "rkmk dop853"})
+    assert np.allclose(run.y_end, [np.cos(0.5), 0, 0, np.sin(0.5)])

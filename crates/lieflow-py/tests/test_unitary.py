@@ -311,3 +311,21 @@ def test_a_field_with_a_trace_is_refused(group, frame):
     inside = np.diag([1.0, -1.0]) if group == "SL(2)" else 1j * np.diag([1.0, 1.0, -2.0])
     r = lf.solve_ivp(lambda t, y: inside, (0, 1), one, group=group, frame=frame, t_eval=[1.0])
     assert abs(np.linalg.det(r.y[0]) - 1) < 1e-13
+
+
+def test_formulas_are_events_of_complex_numbers():
+    h = np.array([[1.0, 0.5 - 0.3j], [0.5 + 0.3j, -1.0]])
+    for group in ("U(2)", lf.U(2)):
+        texts = ["re21", "re11^2 + im11^2 - 0.95", lf.Event("im12 - 0.2", terminal=3)]
+        calls = [lambda t, y: y[1, 0].real, lambda t, y: abs(y[0, 0]) ** 2 - 0.95,
+                 lf.Event(lambda t, y: y[0, 1].imag - 0.2, terminal=3)]
+        settings = dict(group=group, frame="space", rtol=1e-10, atol=1e-10)
+        by_text, by_call = (lf.solve_ivp(lambda t, y: -1j * h, (0, 9), np.eye(2), events=e, **settings) for e in (texts, calls))
+        assert by_text.status == 1 and min(map(len, by_text.t_events)) >= 3
+        for one, two in zip(by_text.t_events, by_call.t_events):
+            assert np.abs(one - two).max() < 1e-12
+    vector = dict(group="U(2)", action="linear", frame=None)
+    psi = lf.solve_ivp(lambda t, y: -1j * h, (0, 9), [1.0, 0.0], events="re1^2 + im1^2 - 0.95", **vector)
+    assert np.abs(np.abs(psi.y_events[0][:, 0]) ** 2 - 0.95).max() < 1e-12 and len(psi.t_events[0]) >= 3
+    with pytest.raises(lf.ArgumentError, match=r"events\[0\].*`y11`"):
+        lf.solve_ivp(lambda t, y: -1j * h, (0, 9), np.eye(2), events="y11", group="U(2)", frame="space")

@@ -318,13 +318,22 @@ class Field:
         self.let, self.parameters = copy.deepcopy(dict(let or {})), copy.deepcopy(parameters)
         self._made: dict[Any, _lieflow.Formulas] = {}
 
-    def formulas(self, texts: Any, shape: tuple[int, ...], value: tuple[int, ...]) -> _lieflow.Formulas:
-        """Return formulas in t and the numbers of y of this shape, with values of another."""
-        return kept(self._made, (repr(texts), shape, value), lambda: self._read(texts, shape, value))
+    def formulas(
+        self, texts: Any, shape: tuple[int, ...], value: tuple[int, ...], is_complex: bool = False
+    ) -> _lieflow.Formulas:
+        """Return formulas in t and the numbers of y of this shape, with values of another.
 
-    def _read(self, texts: Any, shape: tuple[int, ...], value: tuple[int, ...]) -> _lieflow.Formulas:
+        The last axis of complex numbers has Re and Im.
+        """
+        made = (repr(texts), shape, value, is_complex)
+        return kept(self._made, made, lambda: self._read(texts, shape, value, is_complex))
+
+    def _read(self, texts: Any, shape: tuple[int, ...], value: tuple[int, ...], is_complex: bool) -> _lieflow.Formulas:
         if isinstance(self.group, Parts):
             columns = self.group.columns()
+        elif is_complex:
+            indices = ["".join(str(i + 1) for i in place) for place in np.ndindex(*shape[:-1])]
+            columns = [part + index for index in indices for part in ("re", "im")]
         else:
             columns = [self.y + "".join(str(i + 1) for i in place) for place in np.ndindex(*shape)]
         if isinstance(self.group, Parts) and value != ():

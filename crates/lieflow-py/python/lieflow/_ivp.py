@@ -251,14 +251,14 @@ class Ready:
                 raise ArgumentError("fun", f"formulas for {self.group}", expected)
             formulas = fun.formulas(fun.field, self.shape, tuple(self.space.value))
             self.stops = formulas.knots(span)
-            self.linear = self.linear or self.parts is None and self._may_be_linear() and not formulas.depends_on_y
+            self.linear = self.linear or self.space.has_linear_methods and not formulas.depends_on_y
             return formulas
         if isinstance(fun, Samples):
             if fun.values.shape[1] != int(np.prod(self.space.value)):
                 expected = f"{int(np.prod(self.space.value))}, a value of f at each time"
                 raise ArgumentError("fun", f"samples of {fun.values.shape[1]} columns", expected)
             self.stops = fun._sampled.knots(span)
-            self.linear = self.linear or self._may_be_linear()
+            self.linear = self.linear or self.space.has_linear_methods
             return fun._sampled
         if hasattr(fun, "argtypes") and hasattr(fun, "restype") or type(fun).__name__ == "LowLevelCallable":
             raise TypeError(f"fun: a value of type {type(fun).__name__}, expected lf.CFunction(fun, parameters) of it")
@@ -269,13 +269,6 @@ class Ready:
         if hasattr(fun, "address"):
             return (address(fun), [float(x) for x in self.args])
         raise TypeError(f"fun: a value of type {type(fun).__name__}, expected a function of t and y")
-
-    def _may_be_linear(self) -> bool:
-        """Does the space have methods for linear equations?"""
-        name, action = self.space_args[0], self.space_args[1]
-        return not (isinstance(name, str) and name.upper() in ("S3", "SU(2)")) and not (
-            name == "SE(3)" and action == "coadjoint"
-        )
 
     def _on_layout(self, fun: Any) -> Any:
         """f of parts or of complex arrays as f of real numbers."""
@@ -295,11 +288,10 @@ class Ready:
         change, layout = event.change, self.layout
         g: Any = event.g
         if isinstance(g, str):
-            if isinstance(layout, ComplexPoints) or isinstance(self.group, Unitary):
-                raise ArgumentError(f"events[{i}]", repr(g), "a function of t and y: formulas have real numbers")
-            maker = field if isinstance(field, Field) else Field(self.group, g)
+            group = self.group.name if isinstance(self.group, Unitary) else self.group
+            maker = field if isinstance(field, Field) else Field(group, g)
             try:
-                g = maker.formulas(g, self.shape, ())
+                g = maker.formulas(g, self.shape, (), isinstance(layout, ComplexPoints))
             except ArgumentError as error:
                 raise ArgumentError(f"events[{i}]", error.value, error.expected) from None
         elif layout is not None:
@@ -374,8 +366,8 @@ def solve_ivp(
     dense_output : bool
         Keep the solution at all times, ``result.sol``.
     events : callable, text, Event, or a list of them
-        Functions g(t, y, *args), with SciPy's attributes ``terminal`` and ``direction``; columns and formulas; or
-        :class:`lieflow.Event`.
+        Functions g(t, y, *args), with SciPy's attributes ``terminal`` and ``direction``; columns and formulas, of complex
+        numbers ``re11``, ``im11`` and so on; or :class:`lieflow.Event`.
     rtol, atol : float, optional
         Tolerances for each step. **The defaults are those of scenes, 1e-14 for methods of order 8; beside the one that is
         given the other is 0.** On a group the error is an angle, and the tolerance rtol + atol; rtol counts less in the

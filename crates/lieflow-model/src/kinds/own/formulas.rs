@@ -31,23 +31,26 @@ impl Formulas {
     /// # Errors
     /// [`Mistakes`], by the paths of keys.
     pub fn read(variables: &[String], counts: &[usize], keys: &Tree) -> Result<Self, Mistakes> {
-        keys.read(|values| {
-            let mut keys = Keys::read(values)?;
-            let (named, samples) = (keys.formula_keys(), keys.sample_keys());
-            let all = core::iter::once("t").chain(variables.iter().map(String::as_str));
-            let (names, field) = (named.names("field", all, samples), keys.field);
-            let (names, field) = all!(names, field)?;
-            if field.len() != counts.len() {
-                let message =
-                    format!("found {}, expected {}", amount(field.len(), "parts"), counts.len());
-                return Err(Refusal::at("field", message).into());
-            }
-            let mut formulas = Vec::new();
-            for (i, (texts, &count)) in field.iter().zip(counts).enumerate() {
-                formulas.extend(texts.read(&"field".index(i), count, &names)?);
-            }
-            Ok(Formulas { formulas: formulas.into(), variables: 1 + variables.len() })
-        })
+        keys.read(|values| read_with(values, |keys| Self::of(variables, counts, keys)))
+    }
+
+    fn of(variables: &[String], counts: &[usize], mut keys: Keys) -> Result<Self, ReadError> {
+        let (named, samples) = (keys.formula_keys(), keys.sample_keys());
+        let all = core::iter::once("t").chain(variables.iter().map(String::as_str));
+        let (names, field) = (named.names("field", all, samples), keys.field);
+        let (mut names, field) = all!(names, field)?;
+        if field.len() != counts.len() {
+            let message =
+                format!("found {}, expected {}", amount(field.len(), "parts"), counts.len());
+            return Err(Refusal::at("field", message).into());
+        }
+        let (mut formulas, mut mistakes) = (Vec::new(), ReadError::default());
+        mistakes.keep(names.take_mistakes());
+        for (i, (texts, &count)) in field.iter().zip(counts).enumerate() {
+            formulas.extend(mistakes.keep(texts.read(&"field".index(i), count, &names)));
+        }
+        let formulas: Vec<Formula> = formulas.into_iter().flatten().collect();
+        mistakes.or(Some(Formulas { formulas: formulas.into(), variables: 1 + variables.len() }))
     }
 
     /// f.

@@ -27,7 +27,7 @@ use std::sync::atomic::AtomicBool;
 
 use faer::Mat;
 use lieflow::actions::{Coadjoint, Linear, Pair, Translation};
-use lieflow::catalog::MethodSpec;
+use lieflow::catalog::{MethodSpec, Needs};
 use lieflow::groups::{MatrixGroup, Se3, So3, UnitQuaternions};
 use lieflow::names::{near, plain};
 use lieflow::{Error, RunError};
@@ -305,8 +305,30 @@ impl Space {
         &self.value
     }
 
-    /// The problem with this field. With `linear`, f depends only on t, and methods for linear equations fit. On quaternions,
-    /// parts and se(3)* there are none, and other methods run.
+    /// True if methods for linear equations are there: not on quaternions, parts and se(3)*.
+    pub fn has_linear_methods(&self) -> bool {
+        !matches!(self.kind, SpaceKind::Quaternion | SpaceKind::Parts(_) | SpaceKind::Pair)
+    }
+
+    /// Checks that a method is not one for linear equations where there is none.
+    ///
+    /// # Errors
+    /// [`Error::Unsupported`], which says where they are; [`Error::UnknownName`].
+    pub fn check_linear(&self, method: &MethodSpec) -> Result<(), Error> {
+        let info = method.info()?;
+        match info.needs == Needs::LinearType && !self.has_linear_methods() {
+            true => Err(Error::Unsupported {
+                what: info.name,
+                with: "unit quaternions, Parts and se(3)*".into(),
+                why: "methods for linear equations are for SO(n), SE(3), U(n) and other groups of matrices, and for the \
+                      vectors and matrices that they act on",
+            }),
+            false => Ok(()),
+        }
+    }
+
+    /// The problem with this field. With `linear`, f depends only on t, and methods for linear equations fit, where there
+    /// are some ([`Self::has_linear_methods`]); other methods run everywhere.
     ///
     /// # Errors
     /// What the library refuses of the group.
