@@ -1,10 +1,14 @@
 //! Arrays in and out: real numbers in C order, with the last axes of one element.
 
+use core::ops::Range;
+use std::time::Instant;
+
 use lieflow::Error;
 use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
 use crate::error::{argument, words};
+use crate::run::SIGNALS;
 
 /// From this number of elements on a map releases the interpreter.
 const MANY: usize = 512;
@@ -146,21 +150,76 @@ pub(crate) fn output<'py>(
 /// An argument by its name, with its numbers and the size of one element. A single element stands for all.
 pub(crate) type Named<'a> = (&'a str, &'a [f64], usize);
 
-/// Runs f on the numbers of the result, without the interpreter if there are many elements.
-pub(crate) fn fill<'py>(
+/// Runs f on the numbers of the arguments and of the result. Many elements are taken in parts, without the interpreter.
+pub(crate) fn fill<'py, const N: usize>(
     py: Python<'py>,
-    inputs: &[Named<'_>],
+    inputs: &[Named<'_>; N],
     (out, lead): (Bound<'py, PyArrayDyn<f64>>, &[usize]),
-    f: impl FnOnce(&mut [f64]) -> Result<(), Error> + Send,
+    mut f: impl FnMut([&[f64]; N], &mut [f64]) -> Result<(), Error> + Send,
 ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
     // SAFETY: `output` gives a writeable array in C order, and what shares memory with it was copied.
     let numbers = unsafe { out.as_slice_mut()? };
-    let many = lead.iter().product::<usize>() >= MANY;
-    let done = if many { py.detach(|| f(numbers)) } else { f(numbers) };
+    let count = lead.iter().product::<usize>();
+    let of_part = |part: Range<usize>| {
+        inputs.map(|(_, numbers, size)| match numbers.len() == size && count != 1 {
+            true => numbers,
+            false => &numbers[size * part.start..size * part.end],
+        })
+    };
+    let done = match count >= MANY {
+        true => py.detach(|| in_parts(count, numbers, |part, out| f(of_part(part), out))),
+        false => f(inputs.map(|(_, numbers, _)| numbers), numbers).map_err(Stopped::Refused),
+    };
     match done {
         Ok(()) => Ok(out),
-        Err(error) => Err(of_element(py, inputs, lead, &error)),
+        Err(Stopped::Refused(error)) => Err(of_element(py, inputs, lead, &error)),
+        Err(Stopped::Interrupted(error)) => Err(error),
     }
+}
+
+/// Why elements were not all taken.
+pub(crate) enum Stopped {
+    /// One of them cannot be used.
+    Refused(Error),
+    /// A signal came.
+    Interrupted(PyErr),
+}
+
+/// The numbers of the first part, about.
+const FIRST: usize = 1 << 16;
+/// A part of so many elements is whole blocks of lanes, so that no bit depends on the parts.
+const LANES: usize = 64;
+
+/// Runs f on parts of `count` elements, which all have as many numbers of `out`. Hears signals between parts, which take
+/// about as long as signals may wait.
+pub(crate) fn in_parts<T>(
+    count: usize,
+    out: &mut [T],
+    mut f: impl FnMut(Range<usize>, &mut [T]) -> Result<(), Error>,
+) -> Result<(), Stopped> {
+    let size = out.len() / count.max(1);
+    let part = (FIRST / size.max(1)).max(1);
+    let mut part = if part > LANES { part - part % LANES } else { part };
+    let mut start = 0;
+    while start < count {
+        let clock = Instant::now();
+        // No part is shorter than the lanes.
+        let end = if count - start < part + LANES { count } else { start + part };
+        f(start..end, &mut out[size * start..size * end]).map_err(|error| {
+            Stopped::Refused(match error {
+                Error::Element { index, source } => Error::Element { index: start + index, source },
+                error => error,
+            })
+        })?;
+        start = end;
+        if clock.elapsed() < SIGNALS {
+            part *= 2;
+        }
+        if start < count {
+            Python::attach(|py| py.check_signals()).map_err(Stopped::Interrupted)?;
+        }
+    }
+    Ok(())
 }
 
 /// The exception of an error at an element of arguments with these leading axes. An argument with a number that is not

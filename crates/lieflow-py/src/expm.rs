@@ -6,7 +6,7 @@ use lieflow::dense::{ComplexExponential, Exponential, ExponentialBatch, Structur
 use numpy::{Complex64, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
-use crate::arrays::{Input, element, fill, output, shape_text};
+use crate::arrays::{Input, Stopped, element, fill, in_parts, output, shape_text};
 use crate::error::{argument, refused, words};
 
 /// Up to this size many matrices are taken in lanes.
@@ -162,8 +162,9 @@ fn in_threads<T: Copy + Send + Sync>(
 ) -> Result<(), Error> {
     let size = (n * n).max(1);
     let exp = &exp;
+    let each = (numbers.len() / size).div_ceil(threads.max(1));
     // Whole blocks, so that the result does not depend on the number of threads.
-    let each = (numbers.len() / size).div_ceil(threads.max(1)).next_multiple_of(BLOCK);
+    let each = if n <= LANES_MAX { each.next_multiple_of(BLOCK) } else { each };
     if threads <= 1 || numbers.is_empty() || each * size >= numbers.len() {
         return exp(numbers, out);
     }
@@ -208,7 +209,7 @@ fn expm<'py>(
     }
     let out = output(py, (&lead, &[n, n]), out, &mut [&mut a])?;
     let numbers = a.numbers();
-    fill(py, &[("A", numbers, n * n)], (out, &lead), |out| {
+    fill(py, &[("A", numbers, n * n)], (out, &lead), |[numbers], out| {
         in_threads(threads, n, numbers, out, |a, out| real(n, a, structure, out))
     })
 }
@@ -225,22 +226,33 @@ fn expm_complex<'py>(
     let shape = a.shape().to_vec();
     let n = square(py, &shape)?;
     let lead = &shape[..shape.len() - 2];
-    let numbers = a.to_vec()?;
+    let numbers = a.readonly();
+    let numbers = numbers.as_slice()?;
     if structure == Structure::Skew {
         let off = |x: Complex64, y: Complex64| (x + y.conj()).norm();
-        check_skew(py, (n, lead), &numbers, off, Complex64::norm)?;
+        check_skew(py, (n, lead), numbers, off, Complex64::norm)?;
     }
-    let mut out = vec![Complex64::default(); numbers.len()];
+    let out = PyArrayDyn::<Complex64>::zeros(py, &*shape, false);
+    let mut written = out.readwrite();
+    let places = written.as_slice_mut()?;
+    let (count, size) = (lead.iter().product(), n * n);
     let done = py.detach(|| {
-        in_threads(threads, n, &numbers, &mut out, |a, out| complex(n, a, structure, out))
+        in_parts(count, places, |part, out| {
+            let numbers = &numbers[size * part.start..size * part.end];
+            in_threads(threads, n, numbers, out, |a, out| complex(n, a, structure, out))
+        })
     });
     match done {
-        Ok(()) => numpy::PyArray1::from_vec(py, out).reshape(shape),
-        Err(Error::Element { index, source }) => {
+        Ok(()) => {
+            drop(written);
+            Ok(out)
+        }
+        Err(Stopped::Refused(Error::Element { index, source })) => {
             let (_, value, expected) = words("A", &source);
             Err(argument(py, &element("A", lead, index), value, expected))
         }
-        Err(error) => Err(refused(py, "A", &error)),
+        Err(Stopped::Refused(error)) => Err(refused(py, "A", &error)),
+        Err(Stopped::Interrupted(error)) => Err(error),
     }
 }
 

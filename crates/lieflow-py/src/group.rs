@@ -68,7 +68,7 @@ impl MatrixGroup {
         let lead = x.lead().to_vec();
         let out = output(py, (&lead, &[n, n]), out, &mut [&mut x])?;
         let numbers = x.numbers();
-        fill(py, &[(name, numbers, n * n)], (out, &lead), |out| {
+        fill(py, &[(name, numbers, n * n)], (out, &lead), |[numbers], out| {
             let rows = numbers.chunks_exact(n * n).zip(out.chunks_exact_mut(n * n));
             for (index, (x, out)) in rows.enumerate() {
                 let value =
@@ -90,7 +90,7 @@ impl MatrixGroup {
         let (lead, mut u, mut v) = common(["u", "v"], both)?;
         let out = output(py, (&lead, &[n, n]), out, &mut [&mut u, &mut v])?;
         let (a, b, size) = (u.numbers(), v.numbers(), n * n);
-        fill(py, &[("u", a, size), ("v", b, size)], (out, &lead), |out| {
+        fill(py, &[("u", a, size), ("v", b, size)], (out, &lead), |[a, b], out| {
             let count = out.len() / size;
             let step = |x: &[f64]| if x.len() == size && count != 1 { 0 } else { size };
             let steps = [step(a), step(b)];
@@ -162,7 +162,7 @@ impl MatrixGroup {
             Form::Identity => Structure::Skew,
             _ => Structure::General,
         };
-        fill(py, &[("u", numbers, n * n)], (out, &lead), |out| {
+        fill(py, &[("u", numbers, n * n)], (out, &lead), |[numbers], out| {
             for (index, u) in numbers.chunks_exact(n * n).enumerate() {
                 self.algebra(u)
                     .map_err(|error| Error::Element { index, source: Box::new(error) })?;
@@ -315,7 +315,7 @@ impl MatrixGroup {
         let lead = g.lead().to_vec();
         let out = output(py, (&lead, &[]), None, &mut [&mut g])?;
         let numbers = g.numbers();
-        fill(py, &[("g", numbers, n * n)], (out, &lead), |out| {
+        fill(py, &[("g", numbers, n * n)], (out, &lead), |[numbers], out| {
             for (g, out) in numbers.chunks_exact(n * n).zip(out) {
                 *out = match self.element(g) {
                     Err(Error::Reflection { .. }) => 2.0,
@@ -338,7 +338,7 @@ impl MatrixGroup {
         let n = self.0.n();
         let mut rng = Pcg64::seed_from_u64(seed);
         let out = output(py, (&[count], &[n, n]), None, &mut [])?;
-        fill(py, &[], (out, &[]), |out| {
+        fill(py, &[], (out, &[count]), |[], out| {
             for out in out.chunks_exact_mut(n * n) {
                 write(&self.0.sample_element(&mut rng), out);
             }

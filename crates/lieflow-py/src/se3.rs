@@ -69,8 +69,8 @@ fn one<'py>(
     let lead = x.lead().to_vec();
     let out = output(py, (&lead, to), out, &mut [&mut x])?;
     let (numbers, sizes) = (x.numbers(), [from, to].map(|tail| tail.iter().product()));
-    fill(py, &[(name, numbers, sizes[0])], (out, &lead), |out| {
-        each((numbers, sizes[0]), (out, sizes[1]), f)
+    fill(py, &[(name, numbers, sizes[0])], (out, &lead), |[x], out| {
+        each((x, sizes[0]), (out, sizes[1]), f)
     })
 }
 
@@ -84,7 +84,7 @@ fn two<'py>(
     let (lead, mut u, mut v) = common(["u", "v"], both)?;
     let out = output(py, (&lead, &[6]), out, &mut [&mut u, &mut v])?;
     let (a, b) = (u.numbers(), v.numbers());
-    fill(py, &[("u", a, 6), ("v", b, 6)], (out, &lead), |out| {
+    fill(py, &[("u", a, 6), ("v", b, 6)], (out, &lead), |[a, b], out| {
         let step = |x: &[f64], n: usize| if x.len() == 6 && n != 1 { 0 } else { 6 };
         let n = out.len() / 6;
         let steps = [step(a, n), step(b, n)];

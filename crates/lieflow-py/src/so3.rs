@@ -21,7 +21,7 @@ fn one<'py>(
     let lead = x.lead().to_vec();
     let out = output(py, (&lead, to), out, &mut [&mut x])?;
     let numbers = x.numbers();
-    fill(py, &[(name, numbers, from.iter().product())], (out, &lead), |out| map(numbers, out))
+    fill(py, &[(name, numbers, from.iter().product())], (out, &lead), |[x], out| map(x, out))
 }
 
 fn two<'py>(
@@ -35,7 +35,7 @@ fn two<'py>(
     let (lead, mut u, mut v) = common(["u", second], both)?;
     let out = output(py, (&lead, &[3]), out, &mut [&mut u, &mut v])?;
     let (a, b) = (u.numbers(), v.numbers());
-    fill(py, &[("u", a, 3), (second, b, 3)], (out, &lead), |out| map(a, b, out))
+    fill(py, &[("u", a, 3), (second, b, 3)], (out, &lead), |[u, v], out| map(u, v, out))
 }
 
 /// The functions, each with its first line of help.

@@ -9,6 +9,7 @@ import time
 import numpy as np
 import pytest
 import scipy.linalg
+from conftest import interrupted
 
 import lieflow as lf
 
@@ -202,3 +203,34 @@ def test_the_size_of_random_elements(group):
     one = group.random()
     for size, lead in ((np.int64(3), (3,)), (3, (3,)), ((2, np.int32(1)), (2, 1)), ([2], (2,)), (0, (0,)), ((), ())):
         assert group.random(size, 1).shape == lead + one.shape
+
+
+def test_many_elements_are_taken_in_parts(rng):
+    u, v, count = rng.standard_normal((200_000, 3)), np.array([0.3, -0.2, 0.5]), 200_000
+    one = np.array([lf.so3.dexpinv(u[i], v) for i in range(0, count, 997)])
+    assert np.abs(lf.so3.dexpinv(u, v)[::997] - one).max() < 1e-14
+    assert np.abs(lf.so3.dexpinv(v, u)[::997] - np.array([lf.so3.dexpinv(v, u[i]) for i in range(0, count, 997)])).max() < 1e-14
+    g = lf.so3.exp(u)
+    assert np.abs(lf.so3.exp(lf.so3.log(g)) - g).max() < 1e-12
+    u[150_001, 1] = np.nan
+    with pytest.raises(lf.ArgumentError) as caught:
+        lf.so3.exp(u)
+    assert caught.value.argument == "u[150001]"
+    a = np.broadcast_to(C2, (70_000, 2, 2)).copy()
+    assert np.array_equal(lf.expm(a)[::7000], np.broadcast_to(lf.expm(C2), (10, 2, 2)))
+    a[69_998, 0, 1] = np.inf
+    with pytest.raises(lf.ArgumentError) as caught:
+        lf.expm(a)
+    assert caught.value.argument == "A[69998]"
+    assert len(lf.SO(4).random(30_000, 1)) == 30_000
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_an_interrupt_of_a_map_of_many_matrices(rng, threads):
+    a = rng.standard_normal((120_000, 16, 16))
+    assert interrupted(lambda: lf.expm(a, threads=threads)) < 0.2
+    z = a[:60_000] + 0.5j
+    assert interrupted(lambda: lf.expm(z, threads=threads)) < 0.3
+    if threads == 1:
+        skew, group = a - np.swapaxes(a, 1, 2), lf.SO(16)
+        assert interrupted(lambda: group.cay(skew)) < 0.2

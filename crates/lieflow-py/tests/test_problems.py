@@ -9,6 +9,7 @@ import warnings
 
 import numpy as np
 import pytest
+from conftest import interrupted
 from stub_of_problems import stub
 
 import lieflow as lf
@@ -317,28 +318,6 @@ def test_samples_from_arrays():
     assert pickle.loads(pickle.dumps(system)) == system
     with pytest.raises(lf.ArgumentError, match="t_span"):
         lf.solve_ivp(system, (0, 3))
-
-
-def interrupted(call):
-    """The time from an interrupt to the end of a call that takes much longer."""
-    import signal
-    import threading
-    import time
-
-    sent = []
-
-    def send():
-        time.sleep(0.3)
-        sent.append(time.perf_counter())
-        signal.pthread_kill(threading.main_thread().ident, signal.SIGINT)
-
-    thread = threading.Thread(target=send)
-    thread.start()
-    with pytest.raises(KeyboardInterrupt):
-        call()
-    late = time.perf_counter() - sent[0]
-    thread.join()
-    return late
 
 
 def test_an_interrupt_of_a_large_fluid():

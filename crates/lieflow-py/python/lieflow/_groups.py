@@ -200,4 +200,4 @@ def expm(
         array = real("A", A)  # rows of different lengths: it raises
     if array.dtype.kind != "c":
         return _lieflow.expm(A, structure, threads, out)
-    return into(_lieflow.expm_complex(np.array(array, dtype=np.complex128, order="C"), structure, threads), out)
+    return into(_lieflow.expm_complex(np.asarray(array, dtype=np.complex128, order="C"), structure, threads), out)
