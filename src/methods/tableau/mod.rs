@@ -16,11 +16,14 @@ pub use pairs::{BS3, DOPRI5, RKF45, VERNER6};
 use crate::scalar::Real;
 
 /// An explicit Runge–Kutta tableau with S stages; `a[i]` is used for j < i only.
+///
+/// A run believes the order of a tableau: only a debug build checks it before a run. Let a test of yours call
+/// [`check`](Self::check) of a tableau of your own.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tableau<const S: usize> {
     /// The name in scene files.
     pub name: &'static str,
-    /// The classical order.
+    /// The classical order. Steps by error are chosen by it, and Munthe-Kaas methods cut dexp⁻¹ there.
     pub order: usize,
     /// Stage weights a_ij.
     pub a: [[f64; S]; S],
