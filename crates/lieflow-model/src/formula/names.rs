@@ -9,7 +9,7 @@ use super::functions::{CALLED, CONSTANTS};
 use super::lost::Losses;
 use super::samples::{SamplesFile, Table};
 use super::tape::Tape;
-use crate::reader::{ReadError, Refusal};
+use crate::reader::{ReadError, Refusal, help_for, suggest};
 
 /// The names that a formula may use.
 #[derive(Clone, Debug, Default)]
@@ -35,6 +35,8 @@ pub struct Names {
 struct Variables {
     names: Vec<String>,
     places: BTreeMap<String, usize>,
+    /// Names of several variables, which no formula can use, and these variables in words.
+    groups: BTreeMap<String, String>,
 }
 
 /// A named formula that is a number, or an entry of one that is a vector or a matrix.
@@ -225,8 +227,23 @@ impl Names {
         usable
     }
 
+    /// A name of several variables, and these variables in words. A formula that has this name is told them.
+    pub fn add_group(&mut self, name: &str, variables: String) {
+        Arc::make_mut(&mut self.variables).groups.insert(name.into(), variables);
+    }
+
+    /// What to do about a name that no formula can use: the variables of a group, or what was probably meant.
+    pub(super) fn help_for(&self, name: &str) -> String {
+        let group = |name| self.variables.groups.get_key_value(name);
+        match group(name).or_else(|| group(without_digits(name))) {
+            Some((group, variables)) => format!("the numbers of {group} are {variables}"),
+            None if suggest(name, &self.all()).is_some() => help_for(name, &self.all()),
+            None => format!("expected one of {}", in_groups(&self.all())),
+        }
+    }
+
     fn push(&mut self, variable: String) {
-        let Variables { names, places } = Arc::make_mut(&mut self.variables);
+        let Variables { names, places, .. } = Arc::make_mut(&mut self.variables);
         places.insert(variable.clone(), names.len());
         names.push(variable);
     }
@@ -283,13 +300,31 @@ impl Names {
     }
 
     /// Every name that stands for a number.
-    pub(super) fn all(&self) -> Vec<&str> {
+    fn all(&self) -> Vec<&str> {
         let variables = self.variables.names.iter().chain(self.columns()).map(String::as_str);
         let formulas = self.formulas.iter().map(|entry| entry.name.as_str());
         let own = self.constants.iter().map(|(name, _)| name.as_str());
         let own = variables.chain(formulas).chain(own);
         own.chain(CONSTANTS.iter().map(|(name, _)| *name)).collect()
     }
+}
+
+/// Is `next` this name with a last digit that is larger by one?
+fn follows(name: &str, next: &str) -> bool {
+    let (name, next) = (name.as_bytes().split_last(), next.as_bytes().split_last());
+    name.zip(next).is_some_and(|((digit, stem), (following, stem_of_next))| {
+        matches!(digit, b'0'..=b'8') && digit + 1 == *following && stem == stem_of_next
+    })
+}
+
+/// Names for a message. Three and more with digits that follow each other are one entry: `m1 to m3`.
+fn in_groups(names: &[&str]) -> String {
+    let groups = names.chunk_by(|name, next| follows(name, next));
+    let entries = groups.map(|group| match group {
+        [first, _, .., last] => format!("{first} to {last}"),
+        group => group.join(", "),
+    });
+    entries.collect::<Vec<_>>().join(", ")
 }
 
 pub(super) fn starts_name(c: char) -> bool {

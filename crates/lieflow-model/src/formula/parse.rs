@@ -312,7 +312,7 @@ impl Parser<'_> {
         let varies = self.names.varies(&name);
         let (message, help) = match varies {
             true => (format!("`{name}` may change with time"), None),
-            false => (format!("unknown name `{name}`"), Some(help_for(&name, &self.names.all()))),
+            false => (format!("unknown name `{name}`"), Some(self.names.help_for(&name))),
         };
         let help = help.into_iter().chain([self.names.where_to_state(&name)]);
         let help = Some(help.collect::<Vec<_>>().join("; "));

@@ -89,6 +89,9 @@ impl OnRows {
     }
 }
 
+/// Of a quantity with more columns than these, the first are listed.
+const LISTED: usize = 20;
+
 /// The columns of a problem, and the names that formulas of them may use: t, the columns, the constants and the
 /// named formulas of the problem.
 #[derive(Debug)]
@@ -153,6 +156,11 @@ impl Columns {
                 variables.push(Some(place));
             }
         }
+        for of_quantity in columns.chunk_by(|column, next| column.quantity == next.quantity) {
+            let listed: Vec<&str> =
+                of_quantity.iter().map(|c| c.name.as_str()).take(LISTED).collect();
+            names.add_group(of_quantity[0].quantity, listed.join(", "));
+        }
         // A name means in all formulas of a scene what it means in its problem.
         let names = names.with_usable_lets("let", seen(lets)?);
         Ok(Columns { columns, names, variables })
@@ -186,7 +194,7 @@ impl Columns {
         }
         let of_quantity = || self.columns.iter().filter(|column| column.quantity == text);
         if of_quantity().next().is_some() {
-            let names: Vec<&str> = of_quantity().map(|c| c.name.as_str()).take(20).collect();
+            let names: Vec<&str> = of_quantity().map(|c| c.name.as_str()).take(LISTED).collect();
             let message = format!("`{text}` has more than one column");
             let help = Some(format!("choose from {}", names.join(", ")));
             return Err(Refusal { help, ..Refusal::at(key, message) }.into());

@@ -205,7 +205,7 @@ fn hamiltonians_are_refused_at_their_line() {
         (
             "hamiltonian = \"m1 + q\"\nalgebra = \"so3\"\nmomentum = [1, 0, 0]",
             4,
-            &["unknown name `q`", "m1, m2, m3"][..],
+            &["unknown name `q`", "m1 to m3"][..],
         ),
         (
             "hamiltonian = \"m1^2\"\nalgebra = \"so3\"\nmomentum = [1, 0]",
