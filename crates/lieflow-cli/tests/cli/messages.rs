@@ -114,6 +114,51 @@ fn events_that_never_come_or_are_missed_are_told() {
 }
 
 #[test]
+fn a_key_of_another_section_is_told_with_it() {
+    let folder = Folder::new();
+    let inertia = "inertia = [1, 2.0, 3.0]";
+    for (key, help) in [
+        ("times = [1]", "`times` is a key of [output]\n"),
+        ("h_max = 1", "`h_max` is a key of [time]\n"),
+        ("tableau = \"heun\"", "`tableau` is a key of [method]\n"),
+        // What other programs call a key of this section is that key.
+        ("J = 1", "did you mean `inertia`?"),
+    ] {
+        let message = refused(&folder, inertia, &format!("{inertia}\n{key}"));
+        assert!(message.contains(help), "{message}");
+    }
+    for (key, help) in [
+        ("rtol = 1e-8", "`rtol` is a key of [time]\n"),
+        ("inertia = [1, 2, 3]", "`inertia` is a key of [problem]\n"),
+        ("name = \"Body\"", "did you mean `title`?"),
+    ] {
+        let message = refused(&folder, "[problem]", &format!("{key}\n[problem]"));
+        assert!(message.contains(help), "{message}");
+    }
+}
+
+#[test]
+fn an_event_with_an_unknown_name_is_told_the_columns() {
+    let folder = Folder::new();
+    let told = |when: &str| {
+        let scene = "[problem]\nkind = \"rigid-body\"\ninertia = [1, 2, 3]\nomega_body = [0.2, 0, 1]\n\
+                     [time]\nt_span = [0, 1]\n[output]\nquantities = [\"attitude\"]\n";
+        folder
+            .write("scene.toml", &format!("{scene}[[events]]\nname = \"z\"\nwhen = \"{when}\"\n"));
+        folder.lieflow(&["run", "scene.toml"]).refused()
+    };
+    for when in ["omega_body2", "omega_body2 - 0.1", "norm(omega_body) - 1"] {
+        let message = told(when);
+        assert!(message.contains("the numbers of omega_body are w1, w2, w3"), "{message}");
+    }
+    let message = told("xxxxxxxx");
+    // Of numbered ones the first and the last.
+    let listed = "expected one of t, g11 to g13, g21 to g23, g31 to g33, m1 to m3, w1 to w3, qw, qx, qy, qz, a1 to a3, \
+                  nutation, ";
+    assert!(message.contains(listed), "{message}");
+}
+
+#[test]
 fn a_comma_and_quotation_marks() {
     let folder = Folder::new();
     let inertia = "inertia = [1, 2.0, 3.0]";

@@ -13,5 +13,5 @@ pub(crate) use read::{
 };
 pub(crate) use refusal::amount;
 pub use refusal::{Either, KeyPath, Refusal, at_most_one, exactly_one};
-pub use suggest::{help_for, suggest};
+pub use suggest::{help_for, is_known, suggest};
 pub use tree::{Mistakes, Tree};

@@ -149,18 +149,25 @@ const OTHER_NAMES: &[(&str, &str)] = &[
     ("product", "composed"),
 ];
 
+/// Other names of these, and what each is.
+fn others<'a>(names: &[&'a str]) -> impl Iterator<Item = (&'static str, &'a str)> {
+    let listed = |name| names.iter().find(|listed| *listed == name).copied();
+    OTHER_NAMES.iter().filter_map(move |(other, name)| Some((*other, listed(name)?)))
+}
+
+/// Is this another name of one of these, as other programs have it?
+pub fn is_known(given: &str, names: &[&str]) -> bool {
+    others(names).any(|(other, _)| names::same(other, given))
+}
+
 /// The name that was meant, when that is clear.
 fn meant<'a>(given: &str, names: &[&'a str]) -> Option<Alias<'a>> {
     let alone = |name| Alias { name, part: None };
-    let others = || {
-        let listed = |name| names.iter().find(|listed| *listed == name).copied();
-        OTHER_NAMES.iter().filter_map(move |(other, name)| Some((*other, listed(name)?)))
-    };
     let other = |given: &str| {
-        others().find(|(other, _)| names::same(other, given)).map(|(_, name)| alone(name))
+        others(names).find(|(other, _)| names::same(other, given)).map(|(_, name)| alone(name))
     };
     let nearly = || {
-        let near = names::near(given, &others().map(|(other, _)| other).collect::<Vec<_>>())?;
+        let near = names::near(given, &others(names).map(|(other, _)| other).collect::<Vec<_>>())?;
         other(near)
     };
     let spelt = names::find(given, names.iter().copied()).map(alone);

@@ -8,10 +8,13 @@ use toml::de::{DeString, DeTable, DeValue};
 
 use super::brackets::unclosed;
 use super::error::{Mistakes, SceneError};
+use super::keys::sections;
 use crate::formula::{Constants, DECIMAL_POINT, of_keys};
 use crate::kinds;
 use crate::problem::KeyInfo;
-use crate::reader::{Mistake, Read, ReadError, Refusal, Value, entry_of, given_key, suggest};
+use crate::reader::{
+    Mistake, Read, ReadError, Refusal, Value, entry_of, given_key, is_known, suggest,
+};
 
 /// The keys at the top.
 pub(super) const TOP: &[&str] =
@@ -161,9 +164,22 @@ impl<'a> Document<'a> {
                 (place, value.and_then(|value| self.value_of(value)))
             }
         };
+        let other = match &mistake {
+            Mistake::UnknownKey(_, given, names) => self.other_section(section, given, names),
+            _ => None,
+        };
         let (message, help) = mistake.in_words(section);
+        let help = other.or(help);
         let help = formula.into_iter().chain(help).reduce(|formula, help| formula + "; " + &help);
         SceneError::new(self.source, message).at(self.text, self.file, place).with_help(help)
+    }
+
+    /// What to do about an unknown key that another section has.
+    fn other_section(&self, section: &str, given: &str, names: &[&str]) -> Option<String> {
+        let kind = self.within::<String>("problem", "kind");
+        let mut sections = sections(kind.as_deref()).into_iter();
+        let (other, _) = sections.find(|(name, keys)| *name != section && keys.contains(&given))?;
+        (!is_known(given, names)).then(|| format!("`{given}` is a key of [{other}]"))
     }
 
     /// Where `key`, `key[i]`, `key[i,j]` or `key[i].name[j]` ([`KeyPath`](super::KeyPath)) stands, first in this

@@ -11,11 +11,12 @@ use lieflow::{Error, SaveAt, TimeGrid};
 use super::defaults;
 use super::plot::{Entry, PlotFigure};
 use crate::formula::Lets;
+use crate::kinds;
 use crate::problem::Layer;
 use crate::problem::{Kind, Problem, high_order};
 use crate::reader::values::{Real, Span, Whole};
 use crate::reader::{
-    Either, Key, KeyPath, ReadError, Refusal, all, at_most_one, read_by_keys, seen,
+    Either, Key, KeyPath, Read, ReadError, Refusal, Shape, all, at_most_one, read_by_keys, seen,
 };
 
 read_by_keys! {
@@ -27,6 +28,22 @@ read_by_keys! {
         q: Key<Option<Whole<0>>>,
         layer: Key<Option<String>>,
     }
+}
+
+/// The sections of a scene and their keys. Those of [problem] are the keys of a kind.
+pub(super) fn sections(kind: Option<&str>) -> [(&'static str, Vec<&'static str>); 4] {
+    let names = |shape: Shape| match shape {
+        Shape::Keys(keys) => keys.iter().map(|(name, _)| *name).collect(),
+        _ => Vec::new(),
+    };
+    let kind = kind.and_then(|kind| kinds::named(kind).ok());
+    let of_problem = kind.map_or_else(Vec::new, |kind| kind.keys.iter().map(|k| k.name).collect());
+    [
+        ("time", names(TimeKeys::SHAPE)),
+        ("problem", of_problem),
+        ("output", names(OutputKeys::SHAPE)),
+        ("method", names(MethodKeys::SHAPE)),
+    ]
 }
 
 /// A name, where it is one of these or is not given.

@@ -4,9 +4,8 @@ use toml_edit::{DocumentMut, Item, TableLike, Value};
 
 use super::document::TOP;
 use super::error::SceneError;
-use super::keys::{MethodKeys, OutputKeys, TimeKeys};
-use crate::kinds;
-use crate::reader::{Read, Shape, help_for, suggest};
+use super::keys::sections;
+use crate::reader::{help_for, suggest};
 
 /// A step on the way to a value: a key, or the place in a list, from 1.
 enum Step<'a> {
@@ -80,14 +79,7 @@ fn set(root: &mut Item, setting: &str) -> Result<(), String> {
 /// What is said of a key that no scene has at the top: the section that has it, or the name that was meant.
 fn unknown_at_the_top(root: &Item, given: &str) -> String {
     let kind = root.get("problem").and_then(|problem| problem.get("kind"));
-    let kind = kind.and_then(|kind| kinds::named(kind.as_str()?).ok());
-    let of_problem = kind.map_or_else(Vec::new, |kind| kind.keys.iter().map(|k| k.name).collect());
-    let sections = [
-        ("time", names_of(TimeKeys::SHAPE)),
-        ("problem", of_problem),
-        ("output", names_of(OutputKeys::SHAPE)),
-        ("method", names_of(MethodKeys::SHAPE)),
-    ];
+    let sections = sections(kind.and_then(Item::as_str));
     let in_section = sections
         .iter()
         .find_map(|(section, names)| names.contains(&given).then(|| format!("{section}.{given}")));
@@ -102,14 +94,6 @@ fn unknown_at_the_top(root: &Item, given: &str) -> String {
         None => format!(
             "there is no `{given}` at the top, expected a key with its section, such as time.dt"
         ),
-    }
-}
-
-/// The keys of a section.
-fn names_of(shape: Shape) -> Vec<&'static str> {
-    match shape {
-        Shape::Keys(keys) => keys.iter().map(|(name, _)| *name).collect(),
-        _ => Vec::new(),
     }
 }
 
