@@ -537,7 +537,7 @@ fn the_output_of_the_scene_is_timed() {
         };
         let millisecond = Duration::from_millis(1);
         let effort = Effort {
-            rounds: 1,
+            rounds: 5,
             longest: Duration::from_secs(1),
             shortest: millisecond,
             seed: 1,
@@ -550,8 +550,9 @@ fn the_output_of_the_scene_is_timed() {
         let exact = curves.iter().find(|c| c.candidate.method.name == "exact").unwrap();
         exact.points[0].seconds_per_unit
     };
+    // The two are equal where rows are not timed. A row costs about a twentieth of what comes before all rows.
     let (bare, with_rows) = (exact(&Rows::ENDS), exact(&rows));
-    assert!(with_rows > 100.0 * bare, "one evaluation {bare:e}, 2001 of them {with_rows:e}");
+    assert!(with_rows > 10.0 * bare, "one evaluation {bare:e}, 2001 of them {with_rows:e}");
 }
 
 /// An answer names the method, how much faster it is, why, and what it conserves. Without a method it says why.
