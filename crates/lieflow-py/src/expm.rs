@@ -1,5 +1,7 @@
 //! exp of square matrices, real and complex.
 
+use std::cell::Cell;
+
 use faer::{Mat, c64};
 use lieflow::Error;
 use lieflow::dense::{ComplexExponential, Exponential, ExponentialBatch, Structure};
@@ -15,6 +17,39 @@ const LANES_MAX: usize = 6;
 const FEW: usize = 8;
 /// Matrices of a block in lanes.
 const BLOCK: usize = 64;
+/// Up to this size a thread keeps its workspace.
+const KEPT_MAX: usize = 16;
+
+/// What the exponential of one matrix needs.
+struct Workspace {
+    exponential: Exponential,
+    u: Mat<f64>,
+    g: Mat<f64>,
+}
+
+thread_local! {
+    /// The workspace of the last call. Making one takes ten times as long as the exponential of a small matrix.
+    static KEPT: Cell<Option<Workspace>> = const { Cell::new(None) };
+}
+
+impl Workspace {
+    /// The workspace for n×n matrices: the one that is kept, or a new one.
+    fn of(n: usize) -> Self {
+        let new = || Workspace {
+            exponential: Exponential::new(n),
+            u: Mat::zeros(n, n),
+            g: Mat::zeros(n, n),
+        };
+        KEPT.take().filter(|kept| kept.u.nrows() == n).unwrap_or_else(new)
+    }
+
+    /// Keeps the workspace for the next call.
+    fn keep(self) {
+        if self.u.nrows() <= KEPT_MAX {
+            KEPT.set(Some(self));
+        }
+    }
+}
 
 fn structure_of(py: Python<'_>, name: Option<&str>) -> PyResult<Structure> {
     match name {
@@ -83,8 +118,8 @@ fn one_by_one(
     structure: Structure,
     out: &mut [f64],
 ) -> Result<(), (usize, lieflow::StepError)> {
-    let mut exponential = Exponential::new(n);
-    let (mut u, mut g) = (Mat::zeros(n, n), Mat::zeros(n, n));
+    let mut workspace = Workspace::of(n);
+    let Workspace { exponential, u, g } = &mut workspace;
     let rows = numbers.chunks_exact(n * n).zip(out.chunks_exact_mut(n * n)).enumerate();
     for (index, (row, out)) in rows {
         for j in 0..n {
@@ -92,13 +127,14 @@ fn one_by_one(
                 *u = row[i * n + j];
             }
         }
-        exponential.exp(&u, structure, &mut g).map_err(|error| (index, error))?;
+        exponential.exp(u, structure, g).map_err(|error| (index, error))?;
         for j in 0..n {
             for (i, g) in g.col_as_slice(j).iter().enumerate() {
                 out[i * n + j] = *g;
             }
         }
     }
+    workspace.keep();
     Ok(())
 }
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -74,6 +75,20 @@ def test_expm_is_scipys(rng, n):
         skew = a - np.swapaxes(a, -1, -2)
         q = lf.expm(skew, structure="skew")
         assert np.abs(np.swapaxes(q, -1, -2) @ q - np.eye(n)).max(initial=0.0) < 1e-13
+
+
+def test_expm_of_one_matrix_does_not_depend_on_calls_before(rng):
+    sizes = [1, 2, 3, 5, 8, 16, 17, 40]
+    matrices = [rng.standard_normal((n, n)) * 10.0**power for n in sizes for power in (-3, 0, 1)]
+    alone = [lf.expm(a) for a in matrices]
+    for k in rng.integers(len(matrices), size=200):
+        a = matrices[k]
+        if k % 5 == 0:
+            with pytest.raises(lf.ArgumentError):
+                lf.expm(np.full_like(a, np.inf))
+        assert np.array_equal(lf.expm(a), alone[k])
+        with ThreadPoolExecutor(1) as other:
+            assert np.array_equal(other.submit(lf.expm, a).result(), alone[k])
 
 
 def test_expm_of_mixed_norms_and_complex(rng):
