@@ -170,12 +170,7 @@ impl<const OUT: usize> Results<'_, OUT> {
                 }
             }
             Results::Rows(output) => {
-                let output = &mut output[OUT * start..OUT * (start + len)];
-                for (i, output) in output.chunks_exact_mut(OUT).enumerate() {
-                    for k in 0..OUT {
-                        output[k] = y[k][i];
-                    }
-                }
+                write_rows(y, &mut output[OUT * start..OUT * (start + len)]);
             }
         }
     }
@@ -191,6 +186,17 @@ impl<const OUT: usize> Results<'_, OUT> {
             Results::Rows(output) => {
                 output[OUT * index..OUT * (index + 1)].copy_from_slice(&value);
             }
+        }
+    }
+}
+
+/// The rows ← the components. It is a function of its own without the instructions of the lanes, since the compiler would
+/// take one that scatters numbers, which is slower than one store for each.
+#[inline(never)]
+fn write_rows<const OUT: usize>(y: &Block<OUT>, rows: &mut [f64]) {
+    for (i, row) in rows.chunks_exact_mut(OUT).enumerate() {
+        for k in 0..OUT {
+            row[k] = y[k][i];
         }
     }
 }
@@ -254,11 +260,16 @@ impl<K: Kernel<IN, OUT>, const IN: usize, const OUT: usize> WithSimd for Run<'_,
 /// The numbers of a block.
 type Block<const K: usize> = [[f64; BLOCK]; K];
 
+/// Numbers from the start of a line of the cache, so that no lane lies in two lines.
+#[repr(align(64))]
+struct Aligned<T>(T);
+
 impl<K: Kernel<IN, OUT>, const IN: usize, const OUT: usize> Run<'_, K, IN, OUT> {
     #[inline(always)]
     fn blocks<const FUSED: bool>(self) -> Result<(), Error> {
         let Run { n, input, mut output, .. } = self;
-        let (mut x, mut y, mut guard) = ([[0.0; BLOCK]; IN], [[0.0; BLOCK]; OUT], [0.0; BLOCK]);
+        let mut numbers = Aligned(([[0.0; BLOCK]; IN], [[0.0; BLOCK]; OUT], [0.0; BLOCK]));
+        let Aligned((x, y, guard)) = &mut numbers;
         for start in (0..n).step_by(BLOCK) {
             let len = BLOCK.min(n - start);
             for (x, input) in x.iter_mut().zip(&input) {
@@ -274,7 +285,6 @@ impl<K: Kernel<IN, OUT>, const IN: usize, const OUT: usize> Run<'_, K, IN, OUT> 
                 below &= square < TURN;
                 large &= square >= TURN;
             }
-            let (x, y, guard) = (&x, &mut y, &mut guard);
             match (small, below, large) {
                 _ if !K::HAS_SIZES => lanes::<K, FUSED, MIXED, IN, OUT>(x, y, guard),
                 (true, ..) => lanes::<K, FUSED, SMALL, IN, OUT>(x, y, guard),
