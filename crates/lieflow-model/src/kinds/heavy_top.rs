@@ -97,7 +97,7 @@ struct Pose {
 }
 
 /// A way to represent the state of a top.
-trait Representation: Clone + Debug + Send + Sync + 'static {
+trait TopCoordinates: Clone + Debug + Send + Sync + 'static {
     /// The problem of the library.
     type Problem: Runnable;
     /// What is integrated, in words.
@@ -127,13 +127,13 @@ trait Representation: Clone + Debug + Send + Sync + 'static {
     }
 }
 
-type Point<R> = lieflow::problems::PointOf<<R as Representation>::Problem>;
+type Point<R> = lieflow::problems::PointOf<<R as TopCoordinates>::Problem>;
 
 /// μ and γ.
 #[derive(Clone, Debug)]
 struct MomentumAndVertical;
 
-impl Representation for MomentumAndVertical {
+impl TopCoordinates for MomentumAndVertical {
     type Problem = OnSe3;
     const MODELLED: &'static str = "momentum and vertical on se(3)*";
     const STATE: &'static [&'static str] = &["momentum_body", "vertical"];
@@ -160,7 +160,7 @@ impl Representation for MomentumAndVertical {
 #[derive(Clone, Debug)]
 struct WithAttitude;
 
-impl Representation for WithAttitude {
+impl TopCoordinates for WithAttitude {
     type Problem = Driven;
     const MODELLED: &'static str = "attitude and momentum in space; torques: gravity";
     const STATE: &'static [&'static str] = &["attitude", "momentum_space"];
@@ -209,7 +209,7 @@ impl TopSpec {
     }
 }
 
-impl<R: Representation> Top<R> {
+impl<R: TopCoordinates> Top<R> {
     /// μ and γ.
     fn momentum_and_vertical(y: &PointOf<Self>) -> (Vector3<f64>, Vector3<f64>) {
         let Pose { mu, gamma, .. } = R::pose(y);
@@ -222,7 +222,7 @@ impl<R: Representation> Top<R> {
     }
 }
 
-impl<R: Representation> Oriented for Top<R> {
+impl<R: TopCoordinates> Oriented for Top<R> {
     fn orientation(&self, y: &PointOf<Self>) -> Orientation {
         R::pose(y).orientation
     }
@@ -234,7 +234,7 @@ impl<R: Representation> Oriented for Top<R> {
     }
 }
 
-impl<R: Representation> AsBody for Top<R> {
+impl<R: TopCoordinates> AsBody for Top<R> {
     fn momentum(&self, y: &PointOf<Self>) -> Vector3<f64> {
         R::pose(y).mu
     }
@@ -246,7 +246,7 @@ impl<R: Representation> AsBody for Top<R> {
     }
 }
 
-impl<R: Representation> System for Top<R> {
+impl<R: TopCoordinates> System for Top<R> {
     type Problem = R::Problem;
 
     const STATE: &'static [&'static str] = R::STATE;

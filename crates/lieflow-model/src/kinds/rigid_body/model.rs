@@ -30,7 +30,7 @@ pub(super) struct Pose {
 }
 
 /// A way to represent the state of a free rigid body.
-pub(super) trait Representation: Clone + Debug + Send + Sync + 'static {
+pub(super) trait BodyCoordinates: Clone + Debug + Send + Sync + 'static {
     /// The problem of the library.
     type Problem: Runnable + Clone + Debug + Send + Sync;
     /// The layer of the problem.
@@ -60,7 +60,7 @@ pub(super) trait Representation: Clone + Debug + Send + Sync + 'static {
     }
 }
 
-type Point<R> = lieflow::problems::PointOf<<R as Representation>::Problem>;
+type Point<R> = lieflow::problems::PointOf<<R as BodyCoordinates>::Problem>;
 
 fn to_faer(m: &Matrix3<f64>) -> Mat<f64> {
     Mat::from_fn(3, 3, |i, j| m[(i, j)])
@@ -73,7 +73,7 @@ fn to_nalgebra(m: &Mat<f64>) -> Matrix3<f64> {
 #[derive(Clone, Debug)]
 pub(super) struct MomentumOnly;
 
-impl Representation for MomentumOnly {
+impl BodyCoordinates for MomentumOnly {
     type Problem = RigidBody;
     const LAYER: Layer = Layer::Closed;
     const MODELLED: &'static str = "momentum on so(3)*";
@@ -98,7 +98,7 @@ impl Representation for MomentumOnly {
 #[derive(Clone, Debug)]
 pub(super) struct Attitude;
 
-impl Representation for Attitude {
+impl BodyCoordinates for Attitude {
     type Problem = RigidBodyAttitude;
     const LAYER: Layer = Layer::Closed;
     const MODELLED: &'static str = "attitude on SO(3)";
@@ -125,7 +125,7 @@ impl Representation for Attitude {
 #[derive(Clone, Debug)]
 pub(super) struct State;
 
-impl Representation for State {
+impl BodyCoordinates for State {
     type Problem = RigidBodyState;
     const LAYER: Layer = Layer::Closed;
     const MODELLED: &'static str = "momentum and attitude as one state of 12 numbers";
@@ -151,7 +151,7 @@ impl Representation for State {
 #[derive(Clone, Debug)]
 pub(super) struct Quaternion;
 
-impl Representation for Quaternion {
+impl BodyCoordinates for Quaternion {
     type Problem = RigidBodyQuaternion;
     const LAYER: Layer = Layer::Closed;
     const MODELLED: &'static str = "attitude on S³, a unit quaternion";
@@ -175,7 +175,7 @@ impl Representation for Quaternion {
 #[derive(Clone, Debug)]
 pub(super) struct MomentumMatrix;
 
-impl Representation for MomentumMatrix {
+impl BodyCoordinates for MomentumMatrix {
     type Problem = RigidBodyN;
     const LAYER: Layer = Layer::General;
     const MODELLED: &'static str = "momentum on so(n)*, n = 3";
@@ -196,7 +196,7 @@ impl Representation for MomentumMatrix {
 #[derive(Clone, Debug)]
 pub(super) struct AttitudeMatrix;
 
-impl Representation for AttitudeMatrix {
+impl BodyCoordinates for AttitudeMatrix {
     type Problem = RigidBodyNAttitude;
     const LAYER: Layer = Layer::General;
     const MODELLED: &'static str = "attitude on SO(n), n = 3";
@@ -219,7 +219,7 @@ impl Representation for AttitudeMatrix {
 
 /// A free rigid body in one representation.
 #[derive(Clone, Debug)]
-pub(super) struct Body<R: Representation> {
+pub(super) struct Body<R: BodyCoordinates> {
     spec: RigidBodySpec,
     /// ω and the energy, for all representations.
     body: RigidBody,
@@ -228,7 +228,7 @@ pub(super) struct Body<R: Representation> {
 
 type Q<R> = Quantity<Body<R>>;
 
-impl<R: Representation> Body<R> {
+impl<R: BodyCoordinates> Body<R> {
     /// # Errors
     /// What the library refuses.
     pub(super) fn new(spec: &RigidBodySpec) -> Result<Self, Error> {
@@ -237,7 +237,7 @@ impl<R: Representation> Body<R> {
     }
 }
 
-impl<R: Representation> Oriented for Body<R> {
+impl<R: BodyCoordinates> Oriented for Body<R> {
     fn orientation(&self, y: &PointOf<Self>) -> Orientation {
         R::pose(&self.problem, y).orientation
     }
@@ -249,7 +249,7 @@ impl<R: Representation> Oriented for Body<R> {
     }
 }
 
-impl<R: Representation> AsBody for Body<R> {
+impl<R: BodyCoordinates> AsBody for Body<R> {
     fn momentum(&self, y: &PointOf<Self>) -> Vector3<f64> {
         R::pose(&self.problem, y).m
     }
@@ -258,7 +258,7 @@ impl<R: Representation> AsBody for Body<R> {
     }
 }
 
-impl<R: Representation> System for Body<R> {
+impl<R: BodyCoordinates> System for Body<R> {
     type Problem = R::Problem;
 
     const STATE: &'static [&'static str] =
