@@ -7,12 +7,10 @@ use core::ops::Range;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use toml::de::{DeTable, DeValue};
-
 use super::names::Names;
 use super::parameters::{Parameters, words};
 use super::parse::{self, parse};
-use crate::reader::{Mistake, Read, ReadError, Shape, Value, given_key};
+use crate::reader::{Is, Keys, Mistake, Read, ReadError, Shape, Value, given_key};
 
 /// What the formulas of numbers may name.
 #[derive(Clone, Debug, Default)]
@@ -28,16 +26,13 @@ pub(crate) type Instead = &'static [(&'static str, &'static str)];
 impl Constants {
     /// Those of a section, whose named formulas and `varying` names may change with time. The mistakes in its parameters
     /// are left to who reads them.
-    pub(crate) fn of(
-        section: Option<&Value<'_>>,
-        varying: impl IntoIterator<Item = String>,
-    ) -> Self {
-        let within = |key: &str| section.and_then(|section| section.get_ref().get(key));
-        let lets = within("let").and_then(|lets| lets.get_ref().as_table());
+    pub(crate) fn of(section: Option<&Value>, varying: impl IntoIterator<Item = String>) -> Self {
+        let within = |key: &str| section.and_then(|section| section.get(key));
+        let lets = within("let").and_then(|lets| lets.as_table());
         let lets = lets.into_iter().flat_map(|lets| lets.keys());
         let mut varying: BTreeSet<String> = varying.into_iter().collect();
         varying.insert("t".into());
-        varying.extend(lets.map(|name| name.get_ref().to_string()));
+        varying.extend(lets.cloned());
         let parameters = within("parameters").and_then(|value| {
             // A parameter with a mistake is there, without a value.
             Parameters::read_usable(value, &mut ReadError::default())
@@ -60,13 +55,13 @@ impl Constants {
     /// Reads a table with these keys, in which texts that stand for numbers are numbers.
     pub(crate) fn read<T>(
         &self,
-        value: &Value<'_>,
+        value: &Value,
         keys: &[(&str, Shape)],
         mistakes: &mut ReadError,
-        read: impl FnOnce(&Value<'_>, &mut ReadError) -> Option<T>,
+        read: impl FnOnce(&Value, &mut ReadError) -> Option<T>,
     ) -> Option<T> {
         let mut found = Vec::new();
-        if let Some(table) = value.get_ref().as_table() {
+        if let Some(table) = value.as_table() {
             self.find_in(table, keys, &[], None, &mut found);
         }
         if found.is_empty() {
@@ -89,28 +84,28 @@ impl Constants {
     }
 
     /// The value of a text that stands for a number, where it has one.
-    pub(crate) fn value(&self, value: &Value<'_>) -> Option<f64> {
-        let text = value.get_ref().as_str()?;
+    pub(crate) fn value(&self, value: &Value) -> Option<f64> {
+        let text = value.as_text()?;
         evaluated(value, text, &self.names, &self.parameters, None).ok()
     }
 
     /// Finds the texts that stand for numbers in a value that is one of these shapes.
     fn find(
         &self,
-        value: &Value<'_>,
+        value: &Value,
         shapes: &[Shape],
         instead: Option<&'static str>,
         found: &mut Vec<Number>,
     ) {
         let mut flat = Vec::new();
         shapes.iter().for_each(|shape| flatten(*shape, &mut flat));
-        match value.get_ref() {
-            DeValue::String(text) => found.extend(self.number(value, text, &flat, instead)),
-            DeValue::Array(list) => {
+        match &value.is {
+            Is::Text(text) => found.extend(self.number(value, text, &flat, instead)),
+            Is::List(list) => {
                 let of_entries: Vec<Shape> = flat.iter().filter_map(|s| of_entry(*s)).collect();
                 list.iter().for_each(|entry| self.find(entry, &of_entries, instead, found));
             }
-            DeValue::Table(table) => {
+            Is::Table(table) => {
                 let all = flat.iter().filter_map(|shape| match shape {
                     Shape::TableOf(entry) => Some(**entry),
                     _ => None,
@@ -126,28 +121,29 @@ impl Constants {
     /// Finds those in a table with these keys, and entries under other names of these shapes.
     fn find_in(
         &self,
-        table: &DeTable<'_>,
+        table: &Keys,
         keys: &[(&str, Shape)],
         of_all: &[Shape],
         instead: Option<&'static str>,
         found: &mut Vec<Number>,
     ) {
         let names: Vec<&str> = keys.iter().map(|(name, _)| *name).collect();
-        for (key, entry) in table {
-            let given: &str = key.get_ref();
-            let own = keys.iter().filter(|(name, _)| given_key(table, name, &names) == Some(given));
+        for (given, entry) in table {
+            let own = keys
+                .iter()
+                .filter(|(name, _)| given_key(table, name, &names) == Some(given.as_str()));
             let shapes: Vec<Shape> =
                 own.map(|(_, shape)| *shape).chain(of_all.iter().copied()).collect();
             let of_key = || self.instead.iter().find(|(key, _)| *key == given);
             let instead = instead.or_else(|| of_key().map(|(_, instead)| *instead));
-            self.find(entry, &shapes, instead, found);
+            self.find(&entry.value, &shapes, instead, found);
         }
     }
 
     /// The number that a text stands for, where it stands for one.
     fn number(
         &self,
-        value: &Value<'_>,
+        value: &Value,
         text: &str,
         shapes: &[Shape],
         instead: Option<&'static str>,
@@ -160,15 +156,15 @@ impl Constants {
             return None;
         }
         let whole = |x: f64| match x.fract() == 0.0 && x.abs() <= WHOLE_MAX {
-            true => Ok(format!("{}", x as i64)),
+            true => Ok(Is::from(x as i64)),
             false => Err(not_a(value, text, x, "a whole number")),
         };
         let x = evaluated(value, text, &self.names, &self.parameters, instead);
         let read = match takes_number {
-            true => x.map(|x| format!("{x:?}")),
+            true => x.map(Is::from),
             false => x.and_then(whole),
         };
-        Some(Number { place: value.span(), read })
+        Some(Number { place: value.place.clone(), read })
     }
 }
 
@@ -178,23 +174,18 @@ const WHOLE_MAX: f64 = 9_007_199_254_740_992.0;
 /// A text that stands for a number.
 struct Number {
     place: Range<usize>,
-    /// The number as TOML writes it.
-    read: Result<String, ReadError>,
+    read: Result<Is, ReadError>,
 }
 
 impl Number {
     /// Puts the number in the place of its text. Where it has none it is NaN, which no key takes.
-    fn put<'a>(&'a self, value: &mut Value<'a>) {
-        if value.span() == self.place && value.get_ref().is_str() {
-            let number = self.read.as_ref().map_or("nan", String::as_str);
-            if let Ok(number) = DeValue::parse(number) {
-                *value.get_mut() = number.into_inner();
+    fn put(&self, value: &mut Value) {
+        match &mut value.is {
+            Is::Text(_) if value.place == self.place => {
+                value.is = self.read.clone().unwrap_or(Is::from(f64::NAN));
             }
-            return;
-        }
-        match value.get_mut() {
-            DeValue::Array(list) => list.iter_mut().for_each(|entry| self.put(entry)),
-            DeValue::Table(table) => table.iter_mut().for_each(|(_, entry)| self.put(entry)),
+            Is::List(list) => list.iter_mut().for_each(|entry| self.put(entry)),
+            Is::Table(table) => table.values_mut().for_each(|entry| self.put(&mut entry.value)),
             _ => {}
         }
     }
@@ -227,19 +218,14 @@ pub(crate) fn of_keys(shape: Shape) -> &'static [(&'static str, Shape)] {
     }
 }
 
-fn not_a(
-    value: &Value<'_>,
-    text: &str,
-    found: impl core::fmt::Display,
-    expected: &str,
-) -> ReadError {
+fn not_a(value: &Value, text: &str, found: impl core::fmt::Display, expected: &str) -> ReadError {
     ReadError::of(value, format!("the value of {text:?} is {found}, expected {expected}"))
 }
 
 /// The value of the formula that a text is. Its mistake is known where it names a parameter that has one. `instead` is what
 /// to use for a formula that changes with time.
 pub(super) fn evaluated(
-    value: &Value<'_>,
+    value: &Value,
     text: &str,
     names: &Names,
     parameters: &Parameters,

@@ -3,12 +3,10 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use toml::de::{DeTable, DeValue};
-
 use super::names::{Names, continues_name};
 use super::numbers::evaluated;
 use crate::reader::values::Real;
-use crate::reader::{KeyPath, Mistake, Read, ReadError, Refusal, Shape, Value};
+use crate::reader::{Entry, KeyPath, Keys, Mistake, Read, ReadError, Refusal, Shape, Value};
 
 /// `[problem.parameters]`: constants, `k = 3.0`. Each may be a formula of others, `w = "sqrt(k/m)"`, in any order.
 #[derive(Clone, Debug, Default)]
@@ -72,11 +70,11 @@ impl Read for Parameters {
     const SHAPE: Shape = Shape::TableOf(&Shape::Formula);
     const OPTIONAL: bool = true;
 
-    fn read(value: &Value<'_>) -> Result<Self, ReadError> {
+    fn read(value: &Value) -> Result<Self, ReadError> {
         crate::reader::read_whole(value)
     }
-    fn read_usable(value: &Value<'_>, mistakes: &mut ReadError) -> Option<Self> {
-        let DeValue::Table(table) = value.get_ref() else {
+    fn read_usable(value: &Value, mistakes: &mut ReadError) -> Option<Self> {
+        let Some(table) = value.as_table() else {
             mistakes.add(ReadError::expected(value, "a table"));
             return None;
         };
@@ -84,7 +82,7 @@ impl Read for Parameters {
         let names = Names::of_numbers(Arc::new(time));
         let mut reader =
             Reader { table, names, path: Vec::new(), done: Parameters::default(), mistakes };
-        table.keys().for_each(|key| reader.define(key.get_ref()));
+        table.keys().for_each(|key| reader.define(key));
         Some(reader.done)
     }
     fn missing() -> Option<Self> {
@@ -96,8 +94,8 @@ impl Read for Parameters {
 const LONGEST_CHAIN: usize = 256;
 
 /// Evaluates parameters, each after those that it needs.
-struct Reader<'v, 'a, 'm> {
-    table: &'v DeTable<'a>,
+struct Reader<'v, 'm> {
+    table: &'v Keys,
     /// Those that are done.
     names: Names,
     done: Parameters,
@@ -106,10 +104,10 @@ struct Reader<'v, 'a, 'm> {
     mistakes: &'m mut ReadError,
 }
 
-impl<'v> Reader<'v, '_, '_> {
+impl<'v> Reader<'v, '_> {
     fn define(&mut self, name: &'v str) {
-        let entry = self.table.get_key_value(name).filter(|_| !self.done.0.contains_key(name));
-        let Some((key, value)) = entry else { return };
+        let entry = self.table.get(name).filter(|_| !self.done.0.contains_key(name));
+        let Some(Entry { key, value }) = entry else { return };
         let wrong = match self.path.iter().position(|above| *above == name) {
             Some(start) => {
                 let circle = [&self.path[start..], &[name]].concat().join(" needs ");
@@ -126,21 +124,21 @@ impl<'v> Reader<'v, '_, '_> {
             self.names.add_constant(name, f64::NAN);
             return;
         }
-        let evaluated = match (self.names.check("parameters", name), value.get_ref()) {
+        let evaluated = match (self.names.check("parameters", name), value.as_text()) {
             (Err(Refusal { message, help, .. }), _) => {
-                Err(Mistake::Wrong(key.span(), message, help).into())
+                Err(Mistake::Wrong(key.clone(), message, help).into())
             }
-            (Ok(()), DeValue::String(text)) => {
+            (Ok(()), Some(text)) => {
                 self.path.push(name);
                 for word in words(text) {
                     if let Some((needed, _)) = self.table.get_key_value(word) {
-                        self.define(needed.get_ref());
+                        self.define(needed);
                     }
                 }
                 self.path.pop();
                 evaluated(value, text, &self.names, &self.done, None)
             }
-            (Ok(()), _) => Real::read(value).map(|x| x.0),
+            (Ok(()), None) => Real::read(value).map(|x| x.0),
         };
         // In a circle it is known already to have no value.
         let constant = self.mistakes.keep(evaluated);

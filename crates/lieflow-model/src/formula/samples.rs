@@ -19,9 +19,9 @@ pub struct SamplesFile(pub(super) String, pub(super) String);
 impl Read for SamplesFile {
     const SHAPE: Shape = Shape::Samples;
 
-    fn read(value: &Value<'_>) -> Result<Self, ReadError> {
+    fn read(value: &Value) -> Result<Self, ReadError> {
         // A file whose mistake is known.
-        if value.get_ref().as_array().is_some_and(|list| list.is_empty()) {
+        if value.as_list().is_some_and(<[_]>::is_empty) {
             return Err(ReadError::known());
         }
         let [name, text] = counted(value, 2, "texts")?;

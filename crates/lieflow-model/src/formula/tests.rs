@@ -2,11 +2,10 @@
 
 use lieflow::scalar::{Counted, Ops};
 
-use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+use toml::de::DeTable;
 
 use super::{Formula, Lets, Names, Parameters, SamplesFile, Text, Texts, Which};
-use crate::reader::{Mistake, Read, ReadError, Refusal};
+use crate::reader::{Is, Mistake, Read, ReadError, Refusal, Value, keys_of};
 
 fn names() -> Names {
     Parameters::default().names("variables", ["x", "y", "w_1"]).expect("three names")
@@ -28,7 +27,8 @@ fn value(text: &str, at: [f64; 3]) -> f64 {
 /// The value of a table with these lines.
 fn table<T: Read>(lines: &str) -> Result<T, ReadError> {
     let table = DeTable::parse(lines).expect("TOML");
-    T::read(&Spanned::new(table.span(), DeValue::Table(table.into_inner())))
+    let place = table.span();
+    T::read(&Value { place, is: Is::Table(keys_of(table.into_inner())) })
 }
 
 #[test]

@@ -1,12 +1,10 @@
 //! Formulas as a scene has them: texts, or numbers.
 
-use toml::de::DeValue;
-
 use super::expression::{Formula, read_value};
 use super::names::Names;
 use super::tape::Tape;
 use crate::reader::values::Real;
-use crate::reader::{KeyPath, Read, ReadError, Refusal, Shape, Value, amount};
+use crate::reader::{Is, KeyPath, Read, ReadError, Refusal, Shape, Value, Written, amount};
 
 /// A formula: a text, or a number.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -222,9 +220,9 @@ impl Read for NamedTexts {
     const SHAPE: Shape =
         Shape::Or(&Shape::Formulas, &Shape::ListOf(&Shape::ListOf(&Shape::Formula)));
 
-    fn read(value: &Value<'_>) -> Result<Self, ReadError> {
-        let entries = value.get_ref().as_array().into_iter().flat_map(|list| list.iter());
-        let mut is_row = entries.map(|entry| entry.get_ref().is_array());
+    fn read(value: &Value) -> Result<Self, ReadError> {
+        let entries = value.as_list().into_iter().flatten();
+        let mut is_row = entries.map(|entry| entry.as_list().is_some());
         match (is_row.clone().any(|row| row), is_row.all(|row| row)) {
             (false, _) => <Texts as Read>::read(value).map(NamedTexts::Texts),
             (true, true) => Vec::read(value).map(NamedTexts::Rows),
@@ -240,13 +238,11 @@ impl Read for NamedTexts {
 impl Read for Text {
     const SHAPE: Shape = Shape::Formula;
 
-    fn read(value: &Value<'_>) -> Result<Self, ReadError> {
-        match value.get_ref() {
-            DeValue::String(text) => Ok(Text(text.to_string())),
-            DeValue::Integer(n) if n.radix() == 10 => Ok(Text(n.as_str().into())),
-            DeValue::Integer(_) | DeValue::Float(_) => {
-                Real::read(value).map(|x| Text(format!("{:?}", x.0)))
-            }
+    fn read(value: &Value) -> Result<Self, ReadError> {
+        match &value.is {
+            Is::Text(text) => Ok(Text(text.clone())),
+            Is::Whole(Written { value: Some(n), .. }) => Ok(Text(n.to_string())),
+            Is::Whole(_) | Is::Number(_) => Real::read(value).map(|x| Text(format!("{:?}", x.0))),
             _ => Err(ReadError::expected(value, "a formula: a text or a number")),
         }
     }
@@ -255,12 +251,10 @@ impl Read for Text {
 impl Read for Texts {
     const SHAPE: Shape = Shape::Formulas;
 
-    fn read(value: &Value<'_>) -> Result<Self, ReadError> {
-        match value.get_ref() {
-            DeValue::Array(_) => Vec::read(value).map(Texts::List),
-            DeValue::String(_) | DeValue::Integer(_) | DeValue::Float(_) => {
-                Text::read(value).map(Texts::One)
-            }
+    fn read(value: &Value) -> Result<Self, ReadError> {
+        match value.is {
+            Is::List(_) => Vec::read(value).map(Texts::List),
+            Is::Text(_) | Is::Whole(_) | Is::Number(_) => Text::read(value).map(Texts::One),
             _ => Err(ReadError::expected(value, "a formula, or a list of formulas")),
         }
     }

@@ -11,7 +11,7 @@ use crate::reader::{ReadError, Shape, Value};
 use crate::schema::{Dimension, Units};
 
 /// Reads the keys of a problem, without `kind`.
-pub type ReadForms = fn(&Value<'_>) -> Result<Forms, ReadError>;
+pub type ReadForms = fn(&Value) -> Result<Forms, ReadError>;
 
 /// A kind of problem.
 #[derive(Clone, Copy, Debug)]

@@ -35,7 +35,7 @@ impl Kind {
     ///
     /// # Errors
     /// [`ReadError`] for a value that cannot be used.
-    pub(crate) fn read_problem(&'static self, values: &Value<'_>) -> Result<Problem, ReadError> {
+    pub(crate) fn read_problem(&'static self, values: &Value) -> Result<Problem, ReadError> {
         let keys: Vec<_> = self.keys.iter().map(|key| (key.name, key.shape)).collect();
         let mut mistakes = ReadError::default();
         let forms =
@@ -46,7 +46,7 @@ impl Kind {
     }
 
     /// What formulas of numbers may name in a scene with this section `problem`.
-    pub(crate) fn constants(&self, section: &Value<'_>) -> Constants {
+    pub(crate) fn constants(&self, section: &Value) -> Constants {
         let columns = (self.quantities)();
         let varying = columns.iter().flat_map(QuantityInfo::column_names);
         Constants::of(Some(section), varying).with_instead(self.instead)

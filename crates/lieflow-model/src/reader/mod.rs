@@ -4,9 +4,10 @@ mod read;
 mod refusal;
 mod suggest;
 mod tree;
+mod value;
 pub mod values;
 
-pub use read::{Key, Mistake, Read, ReadError, Shape, Value};
+pub use read::{Key, Mistake, Read, ReadError, Shape};
 pub(crate) use read::{
     KeyReader, all, entry_of, given, given_key, key_name, read_as_held, read_by_keys, read_whole,
     read_with, seen, take,
@@ -15,3 +16,5 @@ pub(crate) use refusal::amount;
 pub use refusal::{Either, KeyPath, Refusal, at_most_one, exactly_one};
 pub use suggest::{help_for, is_known, suggest};
 pub use tree::{Mistakes, Tree};
+pub(crate) use value::keys_of;
+pub use value::{Entry, Is, Keys, Value, Written};

@@ -6,14 +6,10 @@ use std::collections::BTreeMap;
 
 use lieflow::Error;
 use lieflow::names::near;
-use toml::Spanned;
-use toml::de::{DeTable, DeValue};
 
 use super::refusal::Refusal;
 use super::suggest::{help_for, suggest};
-
-/// A value of a scene, with its place in the text.
-pub type Value<'a> = Spanned<DeValue<'a>>;
+use super::value::{Is, Keys, Value};
 
 /// What the value of a key is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -87,10 +83,10 @@ pub trait Read: Sized {
     ///
     /// # Errors
     /// [`ReadError`] with all mistakes: values of another type, and those that cannot be used.
-    fn read(value: &Value<'_>) -> Result<Self, ReadError>;
+    fn read(value: &Value) -> Result<Self, ReadError>;
 
     /// Reads what can be used of a value, and adds its mistakes to those known. `None` if nothing can be used.
-    fn read_usable(value: &Value<'_>, mistakes: &mut ReadError) -> Option<Self> {
+    fn read_usable(value: &Value, mistakes: &mut ReadError) -> Option<Self> {
         mistakes.keep(Self::read(value))
     }
 
@@ -109,7 +105,7 @@ pub trait Read: Sized {
 ///
 /// # Errors
 /// All mistakes.
-pub(crate) fn read_whole<T: Read>(value: &Value<'_>) -> Result<T, ReadError> {
+pub(crate) fn read_whole<T: Read>(value: &Value) -> Result<T, ReadError> {
     let mut mistakes = ReadError::default();
     let read = T::read_usable(value, &mut mistakes);
     mistakes.or(read)
@@ -120,7 +116,7 @@ pub(crate) fn read_whole<T: Read>(value: &Value<'_>) -> Result<T, ReadError> {
 /// # Errors
 /// The mistakes in single keys, and those that are found in what is made of them.
 pub(crate) fn read_with<K: Read, T>(
-    value: &Value<'_>,
+    value: &Value,
     make: impl FnOnce(K) -> Result<T, ReadError>,
 ) -> Result<T, ReadError> {
     let mut mistakes = ReadError::default();
@@ -136,10 +132,10 @@ impl<T: Read> Read for Key<T> {
     const SHAPE: Shape = T::SHAPE;
     const OPTIONAL: bool = T::OPTIONAL;
 
-    fn read(value: &Value<'_>) -> Result<Self, ReadError> {
+    fn read(value: &Value) -> Result<Self, ReadError> {
         read_whole(value)
     }
-    fn read_usable(value: &Value<'_>, mistakes: &mut ReadError) -> Option<Self> {
+    fn read_usable(value: &Value, mistakes: &mut ReadError) -> Option<Self> {
         Some(T::read_usable(value, mistakes).ok_or_else(ReadError::known))
     }
     fn missing() -> Option<Self> {
@@ -213,20 +209,20 @@ impl ReadError {
     }
 
     /// A mistake in a value.
-    pub fn of(value: &Value<'_>, message: impl Into<String>) -> Self {
-        Mistake::Wrong(value.span(), message.into(), None).into()
+    pub fn of(value: &Value, message: impl Into<String>) -> Self {
+        Mistake::Wrong(value.place.clone(), message.into(), None).into()
     }
 
     /// A mistake at a character, from 0, of the text that a value is. It is at the whole value where the file writes some
     /// of the text in another way.
     pub(crate) fn in_text(
-        value: &Value<'_>,
+        value: &Value,
         character: usize,
         message: String,
         help: Option<String>,
     ) -> Self {
-        let text = value.get_ref().as_str().unwrap_or_default();
-        let (span, before) = (value.span(), text.char_indices().nth(character));
+        let text = value.as_text().unwrap_or_default();
+        let (span, before) = (value.place.clone(), text.char_indices().nth(character));
         let bytes = before.map_or(text.len(), |(byte, _)| byte);
         let place = match span.len() == text.len() + 2 {
             true if bytes < text.len() => span.start + 1 + bytes..span.start + 2 + bytes,
@@ -236,15 +232,15 @@ impl ReadError {
     }
 
     /// A value where something else is expected.
-    pub fn expected(value: &Value<'_>, expected: impl Display) -> Self {
-        let found = match value.get_ref() {
-            DeValue::String(text) => format!("the text {text:?}"),
-            DeValue::Integer(n) => n.to_string(),
-            DeValue::Float(x) => x.to_string(),
-            DeValue::Boolean(x) => x.to_string(),
-            DeValue::Datetime(_) => "a date".into(),
-            DeValue::Array(_) => "a list".into(),
-            DeValue::Table(_) => "a table".into(),
+    pub fn expected(value: &Value, expected: impl Display) -> Self {
+        let found = match &value.is {
+            Is::Text(text) => format!("the text {text:?}"),
+            Is::Whole(n) => n.text.clone(),
+            Is::Number(x) => x.text.clone(),
+            Is::Bool(x) => x.to_string(),
+            Is::Date(_) => "a date".into(),
+            Is::List(_) => "a list".into(),
+            Is::Table(_) => "a table".into(),
         };
         Self::of(value, format!("found {found}, expected {expected}"))
     }
@@ -308,8 +304,8 @@ pub(crate) use all;
 impl Read for String {
     const SHAPE: Shape = Shape::Text;
 
-    fn read(value: &Value<'_>) -> Result<Self, ReadError> {
-        let text = value.get_ref().as_str();
+    fn read(value: &Value) -> Result<Self, ReadError> {
+        let text = value.as_text();
         text.map(str::to_owned).ok_or_else(|| ReadError::expected(value, "a text"))
     }
 }
@@ -317,9 +313,11 @@ impl Read for String {
 impl Read for bool {
     const SHAPE: Shape = Shape::Bool;
 
-    fn read(value: &Value<'_>) -> Result<Self, ReadError> {
-        let known = value.get_ref().as_bool();
-        known.ok_or_else(|| ReadError::expected(value, "true or false"))
+    fn read(value: &Value) -> Result<Self, ReadError> {
+        match value.is {
+            Is::Bool(x) => Ok(x),
+            _ => Err(ReadError::expected(value, "true or false")),
+        }
     }
 }
 
@@ -327,10 +325,10 @@ impl<T: Read> Read for Option<T> {
     const SHAPE: Shape = T::SHAPE;
     const OPTIONAL: bool = true;
 
-    fn read(value: &Value<'_>) -> Result<Self, ReadError> {
+    fn read(value: &Value) -> Result<Self, ReadError> {
         T::read(value).map(Some)
     }
-    fn read_usable(value: &Value<'_>, mistakes: &mut ReadError) -> Option<Self> {
+    fn read_usable(value: &Value, mistakes: &mut ReadError) -> Option<Self> {
         T::read_usable(value, mistakes).map(Some)
     }
     fn missing() -> Option<Self> {
@@ -339,18 +337,18 @@ impl<T: Read> Read for Option<T> {
 }
 
 /// Reads an entry of a list or a table.
-fn read_entry<T: Read>(entry: &Value<'_>, mistakes: &mut ReadError) -> Option<T> {
+fn read_entry<T: Read>(entry: &Value, mistakes: &mut ReadError) -> Option<T> {
     T::read_usable(entry, mistakes).or_else(T::unusable)
 }
 
 impl<T: Read> Read for Vec<T> {
     const SHAPE: Shape = Shape::ListOf(&T::SHAPE);
 
-    fn read(value: &Value<'_>) -> Result<Self, ReadError> {
+    fn read(value: &Value) -> Result<Self, ReadError> {
         read_whole(value)
     }
-    fn read_usable(value: &Value<'_>, mistakes: &mut ReadError) -> Option<Self> {
-        let list = value.get_ref().as_array();
+    fn read_usable(value: &Value, mistakes: &mut ReadError) -> Option<Self> {
+        let list = value.as_list();
         let list = list.ok_or_else(|| ReadError::expected(value, "a list"));
         let entries = mistakes.keep(list)?.iter().map(|entry| read_entry(entry, mistakes));
         // Each is read, also after one that is wrong.
@@ -364,14 +362,14 @@ impl<T: Read> Read for BTreeMap<String, T> {
     const SHAPE: Shape = Shape::TableOf(&T::SHAPE);
     const OPTIONAL: bool = true;
 
-    fn read(value: &Value<'_>) -> Result<Self, ReadError> {
+    fn read(value: &Value) -> Result<Self, ReadError> {
         read_whole(value)
     }
-    fn read_usable(value: &Value<'_>, mistakes: &mut ReadError) -> Option<Self> {
-        let table = value.get_ref().as_table();
+    fn read_usable(value: &Value, mistakes: &mut ReadError) -> Option<Self> {
+        let table = value.as_table();
         let table = table.ok_or_else(|| ReadError::expected(value, "a table"));
         let entries = mistakes.keep(table)?.iter().map(|(key, entry)| {
-            read_entry(entry, mistakes).map(|entry| (key.get_ref().to_string(), entry))
+            read_entry(&entry.value, mistakes).map(|entry| (key.clone(), entry))
         });
         let entries: Vec<_> = entries.collect();
         entries.into_iter().collect()
@@ -382,8 +380,8 @@ impl<T: Read> Read for BTreeMap<String, T> {
 }
 
 /// Reads the values of the keys of a table.
-pub(crate) struct KeyReader<'v, 'a, 'm> {
-    table: &'v DeTable<'a>,
+pub(crate) struct KeyReader<'v, 'm> {
+    table: &'v Keys,
     place: Range<usize>,
     names: &'static [&'static str],
     /// The keys in the table that are none of the names, and close to none that is not there.
@@ -391,27 +389,26 @@ pub(crate) struct KeyReader<'v, 'a, 'm> {
     mistakes: &'m mut ReadError,
 }
 
-impl<'v, 'a, 'm> KeyReader<'v, 'a, 'm> {
+impl<'v, 'm> KeyReader<'v, 'm> {
     /// Begins to read a table that has no other keys than these. `None` if the value is no table.
     pub(crate) fn of(
-        value: &'v Value<'a>,
+        value: &'v Value,
         names: &'static [&'static str],
         mistakes: &'m mut ReadError,
     ) -> Option<Self> {
-        let DeValue::Table(table) = value.get_ref() else {
+        let Some(table) = value.as_table() else {
             let keys = format!("a table with the keys {}", names.join(", "));
             mistakes.add(ReadError::expected(value, keys));
             return None;
         };
         let mut unknown = Vec::new();
-        for key in table.keys().filter(|key| !names.contains(&key.get_ref().as_ref())) {
-            let given: &str = key.get_ref();
+        for (given, entry) in table.iter().filter(|(key, _)| !names.contains(&key.as_str())) {
             if near(given, names).is_none_or(|name| table.contains_key(name)) {
-                unknown.push(given);
+                unknown.push(given.as_str());
             }
-            mistakes.add(Mistake::UnknownKey(key.span(), given.into(), names));
+            mistakes.add(Mistake::UnknownKey(entry.key.clone(), given.clone(), names));
         }
-        Some(KeyReader { table, place: value.span(), names, unknown, mistakes })
+        Some(KeyReader { table, place: value.place.clone(), names, unknown, mistakes })
     }
 
     /// Reads the value of a key; of one that is misspelt, too. Returns `None` if nothing of it can be used.
@@ -434,21 +431,13 @@ impl<'v, 'a, 'm> KeyReader<'v, 'a, 'm> {
 
 /// The value of a key of a table with these names; of one that is none of them and close to it, where the key is not
 /// there.
-pub(crate) fn entry_of<'v, 'a>(
-    table: &'v DeTable<'a>,
-    name: &str,
-    names: &[&str],
-) -> Option<&'v Value<'a>> {
-    table.get(given_key(table, name, names)?)
+pub(crate) fn entry_of<'v>(table: &'v Keys, name: &str, names: &[&str]) -> Option<&'v Value> {
+    Some(&table.get(given_key(table, name, names)?)?.value)
 }
 
 /// The key of that name as it is spelt in a table with these names.
-pub(crate) fn given_key<'v>(
-    table: &'v DeTable<'_>,
-    name: &'v str,
-    names: &[&str],
-) -> Option<&'v str> {
-    let unknown = || table.keys().map(|key| &**key.get_ref()).filter(|key| !names.contains(key));
+pub(crate) fn given_key<'v>(table: &'v Keys, name: &'v str, names: &[&str]) -> Option<&'v str> {
+    let unknown = || table.keys().map(String::as_str).filter(|key| !names.contains(key));
     let close = || unknown().find(|key| near(key, names) == Some(name));
     if table.contains_key(name) { Some(name) } else { close() }
 }
@@ -468,10 +457,10 @@ macro_rules! read_as_held {
             const SHAPE: Shape = $shape;
             const OPTIONAL: bool = <$held>::OPTIONAL;
 
-            fn read(value: &Value<'_>) -> Result<Self, ReadError> {
+            fn read(value: &Value) -> Result<Self, ReadError> {
                 $crate::reader::read_whole(value)
             }
-            fn read_usable(value: &Value<'_>, mistakes: &mut ReadError) -> Option<Self> {
+            fn read_usable(value: &Value, mistakes: &mut ReadError) -> Option<Self> {
                 Read::read_usable(value, mistakes).map($name)
             }
             fn missing() -> Option<Self> {
@@ -504,12 +493,12 @@ macro_rules! read_by_keys {
             );
 
             fn read(
-                value: &$crate::reader::Value<'_>,
+                value: &$crate::reader::Value,
             ) -> Result<Self, $crate::reader::ReadError> {
                 $crate::reader::read_whole(value)
             }
             fn read_usable(
-                value: &$crate::reader::Value<'_>,
+                value: &$crate::reader::Value,
                 mistakes: &mut $crate::reader::ReadError,
             ) -> Option<Self> {
                 use $crate::reader::{KeyReader, key_name};

@@ -4,11 +4,10 @@ use core::fmt;
 use core::ops::Range;
 use std::collections::BTreeMap;
 
-use toml::de::{DeTable, DeValue};
-
-use super::read::{Mistake, ReadError, Value};
+use super::read::{Mistake, ReadError};
 use super::refusal::{KeyPath, Refusal};
 use super::suggest::help_for;
+use super::value::{Entry, Is, Value, Written};
 
 /// A value of a key.
 ///
@@ -43,21 +42,42 @@ impl Tree {
     }
 
     /// The tree of a value of a file. A date is its text.
-    pub(crate) fn of(value: &Value<'_>) -> Tree {
-        match value.get_ref() {
-            DeValue::Boolean(x) => Tree::Bool(*x),
-            DeValue::String(text) => Tree::Text(text.to_string()),
-            DeValue::Array(list) => Tree::List(list.iter().map(Tree::of).collect()),
-            DeValue::Table(table) => {
-                Tree::table(table.iter().map(|(key, value)| (&**key.get_ref(), Tree::of(value))))
+    pub(crate) fn of(value: &Value) -> Tree {
+        match &value.is {
+            Is::Bool(x) => Tree::Bool(*x),
+            Is::Text(text) | Is::Date(text) => Tree::Text(text.clone()),
+            Is::List(list) => list.iter().map(Tree::of).collect(),
+            Is::Table(keys) => {
+                Tree::table(keys.iter().map(|(key, entry)| (key, Tree::of(&entry.value))))
             }
-            DeValue::Integer(n) => match i64::from_str_radix(n.as_str(), n.radix()) {
-                Ok(n) => Tree::Whole(n),
-                Err(_) => Tree::Text(n.to_string()),
+            Is::Whole(Written { text, value }) => match value.map(i64::try_from) {
+                Some(Ok(n)) => Tree::Whole(n),
+                _ => Tree::Text(text.clone()),
             },
-            DeValue::Float(x) => x.as_str().parse().map_or(Tree::Text(x.to_string()), Tree::Number),
-            DeValue::Datetime(date) => Tree::Text(date.to_string()),
+            Is::Number(Written { text, value }) => {
+                value.map_or_else(|| Tree::Text(text.clone()), Tree::Number)
+            }
         }
+    }
+
+    /// The value for readers. Each key and each value has a place of its own, counted by `places`.
+    fn value(&self, places: &mut usize) -> Value {
+        let place = new_place(places);
+        let is = match self {
+            Tree::Bool(x) => Is::Bool(*x),
+            Tree::Whole(n) => Is::from(*n),
+            Tree::Number(x) => Is::from(*x),
+            Tree::Text(text) => Is::Text(text.clone()),
+            Tree::List(list) => Is::List(list.iter().map(|entry| entry.value(places)).collect()),
+            Tree::Table(entries) => {
+                let mut entry = |(key, entry): (&String, &Tree)| {
+                    let (place, value) = (new_place(places), entry.value(places));
+                    (key.clone(), Entry { key: place, value })
+                };
+                Is::Table(entries.iter().map(&mut entry).collect())
+            }
+        };
+        Value { place, is }
     }
 
     /// Reads a table of keys.
@@ -66,63 +86,28 @@ impl Tree {
     /// All mistakes, by the paths of keys.
     pub(crate) fn read<T>(
         &self,
-        read: impl Fn(&Value<'_>) -> Result<T, ReadError>,
+        read: impl Fn(&Value) -> Result<T, ReadError>,
     ) -> Result<T, Mistakes> {
-        let text = format!("{KEYS} = {self}");
-        let not_read = |message: &str| Mistakes(vec![Refusal::section(message)]);
-        let mut root = DeTable::parse(&text).map_err(|error| not_read(error.message()))?;
-        let keys = root.get_mut().remove(KEYS).ok_or_else(|| not_read("no keys"))?;
+        let keys = self.value(&mut 0);
         read(&keys).map_err(|error| {
             let mistakes = error.mistakes.into_iter().map(|one| refusal(&keys, one));
             let mistakes: Vec<_> = mistakes.collect();
             match mistakes.is_empty() {
-                true => not_read("a value that cannot be used"),
+                true => Mistakes(vec![Refusal::section("a value that cannot be used")]),
                 false => Mistakes(mistakes),
             }
         })
     }
 }
 
-/// The name of the table of keys in a text.
-const KEYS: &str = "keys";
-
-/// The value as TOML.
-impl fmt::Display for Tree {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Tree::Bool(x) => x.fmt(f),
-            Tree::Whole(n) => n.fmt(f),
-            Tree::Number(x) => f.write_str(&format!("{x:?}").to_lowercase()),
-            Tree::Text(text) => f.write_str(&quoted(text)),
-            Tree::List(list) => {
-                f.write_str("[")?;
-                list.iter().try_for_each(|entry| write!(f, "{entry}, "))?;
-                f.write_str("]")
-            }
-            Tree::Table(entries) => {
-                f.write_str("{ ")?;
-                for (i, (key, entry)) in entries.iter().enumerate() {
-                    let comma = if i > 0 { ", " } else { "" };
-                    write!(f, "{comma}{} = {entry}", quoted(key))?;
-                }
-                f.write_str(" }")
-            }
-        }
-    }
-}
-
-/// A text as TOML writes it.
-fn quoted(text: &str) -> String {
-    let escaped = |c: char| match c {
-        '"' | '\\' => format!("\\{c}"),
-        c if c.is_control() => format!("\\u{:04X}", c as u32),
-        c => c.into(),
-    };
-    format!("\"{}\"", text.chars().map(escaped).collect::<String>())
+/// A place that no other value has.
+fn new_place(places: &mut usize) -> Range<usize> {
+    *places += 1;
+    *places - 1..*places
 }
 
 /// A mistake in a table of keys by the path of its key.
-fn refusal(keys: &Value<'_>, mistake: Mistake) -> Refusal {
+fn refusal(keys: &Value, mistake: Mistake) -> Refusal {
     let within = |place: &Range<usize>| path_at(keys, place, String::new());
     match mistake {
         Mistake::Refused(refusal) => refusal,
@@ -146,22 +131,18 @@ fn join(table: &str, name: &str) -> String {
 }
 
 /// The path of the key or the value at a place, or around it, such as `parts[2].start`. It is empty for the whole.
-fn path_at(value: &Value<'_>, wanted: &Range<usize>, path: String) -> Option<String> {
-    let span = value.span();
-    if span == *wanted {
+fn path_at(value: &Value, wanted: &Range<usize>, path: String) -> Option<String> {
+    if value.place == *wanted {
         return Some(path);
     }
-    if value.get_ref().is_str() && span.contains(&wanted.start) {
-        return Some(path);
-    }
-    match value.get_ref() {
-        DeValue::Array(list) => {
+    match &value.is {
+        Is::List(list) => {
             let mut entries = list.iter().enumerate();
             entries.find_map(|(i, entry)| path_at(entry, wanted, path.index(i)))
         }
-        DeValue::Table(table) => table.iter().find_map(|(key, entry)| {
-            let path = join(&path, key.get_ref());
-            if key.span() == *wanted { Some(path) } else { path_at(entry, wanted, path) }
+        Is::Table(keys) => keys.iter().find_map(|(name, Entry { key, value })| {
+            let path = join(&path, name);
+            if key == wanted { Some(path) } else { path_at(value, wanted, path) }
         }),
         _ => None,
     }

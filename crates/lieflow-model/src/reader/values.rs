@@ -1,9 +1,9 @@
 //! What keys of a scene hold: numbers that are finite, lists of known length.
 
 use faer::Mat;
-use toml::de::DeValue;
 
-use super::read::{Read, ReadError, Shape, Value, read_as_held};
+use super::read::{Read, ReadError, Shape, read_as_held};
+use super::value::{Is, Value};
 use super::{KeyPath, Refusal, amount};
 
 const OUT_OF_RANGE: &str = "the number is out of range";
@@ -16,7 +16,7 @@ pub struct Real(pub f64);
 impl Read for Real {
     const SHAPE: Shape = Shape::Number;
 
-    fn read(value: &Value<'_>) -> Result<Self, ReadError> {
+    fn read(value: &Value) -> Result<Self, ReadError> {
         match number(value)? {
             x if x.is_finite() => Ok(Real(x)),
             _ => Err(ReadError::expected(value, "a finite number")),
@@ -43,13 +43,10 @@ impl Real {
 }
 
 /// A number, also an infinite one and NaN.
-fn number(value: &Value<'_>) -> Result<f64, ReadError> {
-    let number = match value.get_ref() {
-        DeValue::Integer(n) => i128::from_str_radix(n.as_str(), n.radix()).ok().map(|n| n as f64),
-        DeValue::Float(x) => {
-            let is_word = x.as_str().ends_with("inf");
-            x.as_str().parse().ok().filter(|x: &f64| !x.is_infinite() || is_word)
-        }
+fn number(value: &Value) -> Result<f64, ReadError> {
+    let number = match &value.is {
+        Is::Whole(n) => n.value.map(|n| n as f64),
+        Is::Number(x) => x.value,
         _ => return Err(ReadError::expected(value, "a number")),
     };
     number.ok_or_else(|| ReadError::of(value, OUT_OF_RANGE))
@@ -62,11 +59,11 @@ pub struct Whole<const MIN: u64>(pub u64);
 impl<const MIN: u64> Read for Whole<MIN> {
     const SHAPE: Shape = Shape::Whole;
 
-    fn read(value: &Value<'_>) -> Result<Self, ReadError> {
+    fn read(value: &Value) -> Result<Self, ReadError> {
         let expected = || ReadError::expected(value, format!("a whole number, at least {MIN}"));
-        let n = value.get_ref().as_integer().ok_or_else(expected)?;
-        let n = i64::from_str_radix(n.as_str(), n.radix());
-        let n = n.map_err(|_| ReadError::of(value, OUT_OF_RANGE))?;
+        let Is::Whole(n) = &value.is else { return Err(expected()) };
+        let n = n.value.and_then(|n| i64::try_from(n).ok());
+        let n = n.ok_or_else(|| ReadError::of(value, OUT_OF_RANGE))?;
         let n = u64::try_from(n).ok().filter(|n| *n >= MIN);
         n.map(Whole).ok_or_else(expected)
     }
@@ -74,11 +71,11 @@ impl<const MIN: u64> Read for Whole<MIN> {
 
 /// Reads a list of a given number of entries.
 pub(crate) fn counted<T: Read, L: TryFrom<Vec<T>>>(
-    value: &Value<'_>,
+    value: &Value,
     count: usize,
     what: &str,
 ) -> Result<L, ReadError> {
-    if !value.get_ref().is_array() {
+    if value.as_list().is_none() {
         return Err(ReadError::expected(value, format!("a list of {count} {what}")));
     }
     let list = Vec::<T>::read(value)?;
@@ -94,7 +91,7 @@ pub struct Reals<const N: usize>(pub [f64; N]);
 impl<const N: usize> Read for Reals<N> {
     const SHAPE: Shape = Shape::Numbers(N);
 
-    fn read(value: &Value<'_>) -> Result<Self, ReadError> {
+    fn read(value: &Value) -> Result<Self, ReadError> {
         let numbers: [Real; N] = counted(value, N, "numbers")?;
         Ok(Reals(numbers.map(|x| x.0)))
     }
@@ -107,12 +104,12 @@ pub struct Span(pub [f64; 2]);
 impl Read for Span {
     const SHAPE: Shape = Shape::Numbers(2);
 
-    fn read(value: &Value<'_>) -> Result<Self, ReadError> {
+    fn read(value: &Value) -> Result<Self, ReadError> {
         struct End(f64);
         impl Read for End {
             const SHAPE: Shape = Shape::Number;
 
-            fn read(value: &Value<'_>) -> Result<Self, ReadError> {
+            fn read(value: &Value) -> Result<Self, ReadError> {
                 match number(value)? {
                     x if x.is_nan() => Err(ReadError::expected(value, "a finite number")),
                     x => Ok(End(x)),
@@ -134,7 +131,7 @@ pub struct Rows<const N: usize>(pub [[f64; N]; N]);
 impl<const N: usize> Read for Rows<N> {
     const SHAPE: Shape = Shape::Square(N);
 
-    fn read(value: &Value<'_>) -> Result<Self, ReadError> {
+    fn read(value: &Value) -> Result<Self, ReadError> {
         let rows: [Reals<N>; N] = counted(value, N, "rows of numbers")?;
         Ok(Rows(rows.map(|row| row.0)))
     }
@@ -158,9 +155,9 @@ enum Entry<R> {
 impl<R: Read> Read for Entry<R> {
     const SHAPE: Shape = Shape::Or(&Shape::Number, &R::SHAPE);
 
-    fn read(value: &Value<'_>) -> Result<Self, ReadError> {
-        match value.get_ref() {
-            DeValue::Array(_) => R::read(value).map(Entry::Row),
+    fn read(value: &Value) -> Result<Self, ReadError> {
+        match value.is {
+            Is::List(_) => R::read(value).map(Entry::Row),
             _ => Real::read(value).map(|x| Entry::Number(x.0)),
         }
     }
@@ -169,7 +166,7 @@ impl<R: Read> Read for Entry<R> {
 impl Read for Diagonal {
     const SHAPE: Shape = Shape::Or(&Shape::Numbers(3), &Shape::Square(3));
 
-    fn read(value: &Value<'_>) -> Result<Self, ReadError> {
+    fn read(value: &Value) -> Result<Self, ReadError> {
         match counted::<Entry<Reals<3>>, [_; 3]>(value, 3, "numbers")? {
             [Entry::Number(a), Entry::Number(b), Entry::Number(c)] => Ok(Diagonal::List([a, b, c])),
             [Entry::Row(a), Entry::Row(b), Entry::Row(c)] => Ok(Diagonal::Rows([a.0, b.0, c.0])),
@@ -194,7 +191,7 @@ pub enum Numbers {
 impl Read for Numbers {
     const SHAPE: Shape = Shape::Or(&Shape::List, &Shape::Rows);
 
-    fn read(value: &Value<'_>) -> Result<Self, ReadError> {
+    fn read(value: &Value) -> Result<Self, ReadError> {
         let (mut numbers, mut rows) = (Vec::new(), Vec::new());
         for entry in Vec::read(value)? {
             match entry {
@@ -249,7 +246,7 @@ read_as_held!(List: Vec<Real> = Shape::List);
 impl Read for Table {
     const SHAPE: Shape = Shape::Rows;
 
-    fn read(value: &Value<'_>) -> Result<Self, ReadError> {
+    fn read(value: &Value) -> Result<Self, ReadError> {
         match Vec::read(value)? {
             rows if rows.is_empty() => Err(ReadError::of(value, NO_ROWS)),
             rows => Ok(Table(rows)),

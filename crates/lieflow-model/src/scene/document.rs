@@ -3,8 +3,7 @@
 use core::iter;
 use core::ops::Range;
 
-use toml::Spanned;
-use toml::de::{DeString, DeTable, DeValue};
+use toml::de::DeTable;
 
 use super::brackets::unclosed;
 use super::error::{Mistakes, SceneError};
@@ -13,7 +12,8 @@ use crate::formula::{Constants, DECIMAL_POINT, of_keys};
 use crate::kinds;
 use crate::problem::KeyInfo;
 use crate::reader::{
-    Mistake, Read, ReadError, Refusal, Value, entry_of, given_key, is_known, suggest,
+    Entry, Is, Keys, Mistake, Read, ReadError, Refusal, Value, entry_of, given_key, is_known,
+    keys_of, suggest,
 };
 
 /// The keys at the top.
@@ -51,11 +51,11 @@ fn help_for_text(text: &str, place: Range<usize>) -> Option<String> {
 }
 
 /// What formulas of numbers may name.
-fn constants_of(root: &DeTable<'_>) -> Constants {
+fn constants_of(root: &Keys) -> Constants {
     let Some(problem) = entry_of(root, "problem", TOP) else {
         return Constants::of(None, []);
     };
-    let kind = problem.get_ref().get("kind").and_then(|kind| kind.get_ref().as_str());
+    let kind = problem.get("kind").and_then(Value::as_text);
     let kind = kind.and_then(|kind| kinds::named(kind).ok());
     kind.map_or_else(|| Constants::of(Some(problem), []), |kind| kind.constants(problem))
 }
@@ -66,7 +66,7 @@ pub(super) struct Document<'a> {
     text: &'a str,
     /// The text without settings.
     file: &'a str,
-    root: DeTable<'a>,
+    root: Keys,
     /// What formulas of numbers may name.
     constants: Constants,
 }
@@ -79,7 +79,7 @@ impl<'a> Document<'a> {
         let start = |error: &toml::de::Error| error.span().unwrap_or_default().start;
         let line = |error: &toml::de::Error| text[..start(error)].matches('\n').count();
         let Some(error) = mistakes.into_iter().min_by_key(line) else {
-            let root = root.into_inner();
+            let root = keys_of(root.into_inner());
             let constants = constants_of(&root);
             return Ok(Document { source, text, file, root, constants });
         };
@@ -98,41 +98,39 @@ impl<'a> Document<'a> {
     }
 
     /// The keys at the top that no scene has.
-    fn unknown(&self) -> impl Iterator<Item = &Spanned<DeString<'a>>> {
-        self.root.keys().filter(|key| !TOP.contains(&key.get_ref().as_ref()))
+    fn unknown(&self) -> impl Iterator<Item = (&String, &Entry)> {
+        self.root.iter().filter(|(key, _)| !TOP.contains(&key.as_str()))
     }
 
     /// Refuses the keys at the top that no scene has.
     pub(super) fn check_top(&self) -> Result<(), ReadError> {
-        let mistake = |key: &Spanned<DeString<'_>>| {
-            Mistake::UnknownKey(key.span(), key.get_ref().to_string(), TOP)
+        let mistake = |(key, entry): (&String, &Entry)| {
+            Mistake::UnknownKey(entry.key.clone(), key.clone(), TOP)
         };
         ReadError { mistakes: self.unknown().map(mistake).collect() }.or(Some(()))
     }
 
     /// The value of a key at the top; of one that is misspelt, too.
-    pub(super) fn get(&self, key: &str) -> Option<&Value<'a>> {
+    pub(super) fn get(&self, key: &str) -> Option<&Value> {
         entry_of(&self.root, key, TOP)
     }
 
     /// The value of a key of a section, where it is there and reads as T.
     pub(super) fn within<T: Read>(&self, section: &str, key: &str) -> Option<T> {
-        T::read(self.get(section)?.get_ref().get(key)?).ok()
+        T::read(self.get(section)?.get(key)?).ok()
     }
 
     /// The entries of a list at the top. Empty if it is missing.
-    pub(super) fn entries(&self, key: &str) -> Result<&[Value<'a>], ReadError> {
+    pub(super) fn entries(&self, key: &str) -> Result<&[Value], ReadError> {
         let Some(value) = self.get(key) else { return Ok(&[]) };
-        let list = value.get_ref().as_array();
-        list.map(|list| &list[..])
-            .ok_or_else(|| ReadError::expected(value, format!("a list: [[{key}]]")))
+        value.as_list().ok_or_else(|| ReadError::expected(value, format!("a list: [[{key}]]")))
     }
 
     /// A section, which is a table.
-    pub(super) fn section(&self, name: &str) -> Result<&Value<'a>, ReadError> {
+    pub(super) fn section(&self, name: &str) -> Result<&Value, ReadError> {
         match self.get(name) {
             // An unknown key may be meant to be this one.
-            None if self.unknown().any(|key| suggest(key.get_ref(), &[name]).is_some()) => {
+            None if self.unknown().any(|(key, _)| suggest(key, &[name]).is_some()) => {
                 Err(ReadError::known())
             }
             None => {
@@ -142,7 +140,7 @@ impl<'a> Document<'a> {
                 let missing = Refusal::section(format!("missing section [{name}]"));
                 Err(Refusal { help, ..missing }.into())
             }
-            Some(section) if section.get_ref().is_table() => Ok(section),
+            Some(section) if section.as_table().is_some() => Ok(section),
             Some(other) => Err(ReadError::expected(other, format!("a section [{name}]"))),
         }
     }
@@ -160,7 +158,7 @@ impl<'a> Document<'a> {
             | Mistake::Wrong(place, ..) => (Some(place.clone()), None),
             Mistake::Refused(Refusal { key, .. }) => {
                 let value = key.as_ref().and_then(|key| self.locate(section, key));
-                let place = value.or_else(|| self.get(section)).map(Spanned::span);
+                let place = value.or_else(|| self.get(section)).map(|value| value.place.clone());
                 (place, value.and_then(|value| self.value_of(value)))
             }
         };
@@ -184,20 +182,20 @@ impl<'a> Document<'a> {
 
     /// Where `key`, `key[i]`, `key[i,j]` or `key[i].name[j]` ([`KeyPath`](super::KeyPath)) stands, first in this
     /// section, then in the others, then at the top.
-    fn locate(&self, section: &str, key: &str) -> Option<&Value<'a>> {
+    fn locate(&self, section: &str, key: &str) -> Option<&Value> {
         let mut path =
             key.split(['[', ']', ',', '.']).map(str::trim).filter(|step| !step.is_empty());
         let name = path.next()?;
         let sections = iter::once(&section).chain(TOP).filter_map(|section| self.get(section));
-        let within = sections.filter_map(|section| section.get_ref().as_table());
+        let within = sections.filter_map(|section| section.as_table());
         // A key with this name, and else one that is misspelt.
-        let exact = within.clone().find_map(|table| table.get(name));
+        let exact = within.clone().find_map(|table| Some(&table.get(name)?.value));
         let close = || within.clone().find_map(|table| entry_of(table, name, &[name]));
         let mut place = exact.or_else(|| self.get(name)).or_else(close)?;
         for step in path {
-            let next = match (step.parse::<usize>(), place.get_ref()) {
-                (Ok(i), DeValue::Array(list)) => list.get(i.wrapping_sub(1)),
-                (_, DeValue::Table(table)) => entry_of(table, step, &[step]),
+            let next = match (step.parse::<usize>(), &place.is) {
+                (Ok(i), Is::List(list)) => list.get(i.wrapping_sub(1)),
+                (_, Is::Table(table)) => entry_of(table, step, &[step]),
                 _ => None,
             };
             match next {
@@ -209,8 +207,8 @@ impl<'a> Document<'a> {
     }
 
     /// The value of a text that is a formula of a number, in words.
-    fn value_of(&self, value: &Value<'_>) -> Option<String> {
-        let text = value.get_ref().as_str().filter(|text| text.parse::<f64>().is_err())?;
+    fn value_of(&self, value: &Value) -> Option<String> {
+        let text = value.as_text().filter(|text| text.parse::<f64>().is_err())?;
         let x = self.constants.value(value)?;
         Some(format!("the value of {text:?} is {x}"))
     }
@@ -237,7 +235,7 @@ impl<'d, 'a> Finder<'d, 'a> {
     }
 
     /// Reads what can be used of a value in a section, and keeps its mistakes.
-    pub(super) fn read<T: Read>(&mut self, section: &str, value: &Value<'_>) -> Option<T> {
+    pub(super) fn read<T: Read>(&mut self, section: &str, value: &Value) -> Option<T> {
         let (mut mistakes, keys) = (ReadError::default(), of_keys(T::SHAPE));
         let read = self.document.constants.read(value, keys, &mut mistakes, T::read_usable);
         self.add(section, mistakes);
@@ -246,7 +244,7 @@ impl<'d, 'a> Finder<'d, 'a> {
 
     /// Reads the keys of a section, all of which may be missing, as the section may be.
     pub(super) fn read_if_any<T: Read>(&mut self, section: &str) -> Option<T> {
-        let none = Spanned::new(0..0, DeValue::Table(DeTable::new()));
+        let none = Value { place: 0..0, is: Is::Table(Keys::new()) };
         let value = match self.document.get(section) {
             Some(_) => self.keep(section, self.document.section(section))?,
             None => &none,
@@ -274,45 +272,45 @@ impl<'d, 'a> Finder<'d, 'a> {
 /// Puts the text of a file behind its name, where a key of a section names a file: \[name, text\]. An empty list stands
 /// for a file whose mistake is known.
 pub(super) fn with_file(
-    section: &mut Value<'_>,
+    section: &mut Value,
     key: &str,
     keys: &[KeyInfo],
     read: impl Fn(&str) -> Result<String, String>,
 ) -> Result<(), ReadError> {
-    let DeValue::Table(table) = section.get_mut() else { return Ok(()) };
+    let Is::Table(table) = &mut section.is else { return Ok(()) };
     let names: Vec<&str> = keys.iter().map(|key| key.name).collect();
     let Some(given) = given_key(table, key, &names).map(str::to_owned) else { return Ok(()) };
-    let Some(value) = table.get_mut(given.as_str()) else { return Ok(()) };
-    let text = match value.get_ref() {
-        DeValue::String(name) => read(name).map_err(|why| Refusal::at(key, why).into()),
+    let Some(Entry { value, .. }) = table.get_mut(&given) else { return Ok(()) };
+    let text = match &value.is {
+        Is::Text(name) => read(name).map_err(|why| Refusal::at(key, why).into()),
         _ => Err(ReadError::expected(value, "the name of a file")),
     };
-    let name = DeValue::String(value.get_ref().as_str().unwrap_or_default().to_owned().into());
-    let parts =
-        text.as_ref().map_or(Vec::new(), |text| vec![name, DeValue::String(text.clone().into())]);
-    let file = parts.into_iter().map(|part| Spanned::new(value.span(), part)).collect();
-    *value.get_mut() = DeValue::Array(file);
+    let name = value.as_text().unwrap_or_default().to_owned();
+    let parts = text.as_ref().map_or(Vec::new(), |text| vec![name, text.clone()]);
+    let part = |text| Value { place: value.place.clone(), is: Is::Text(text) };
+    value.is = Is::List(parts.into_iter().map(part).collect());
     text.map(|_| ())
 }
 
 /// A table without the places of its values.
-fn without_places(table: &DeTable<'_>) -> String {
-    let entry = |(key, value): (&Spanned<_>, &Value<'_>)| {
-        format!("{:?}: {}", key.get_ref(), without_place(value.get_ref()))
-    };
+fn without_places(table: &Keys) -> String {
+    let entry =
+        |(key, entry): (&String, &Entry)| format!("{key:?}: {}", without_place(&entry.value));
     format!("{{{}}}", table.iter().map(entry).collect::<Vec<_>>().join(", "))
 }
 
 /// A value without its place. Numbers are compared as numbers: 1e-3 is 0.001.
-fn without_place(value: &DeValue<'_>) -> String {
-    match value {
-        DeValue::Integer(n) => format!("Integer({n})"),
-        DeValue::Float(x) => format!("Float({:?})", x.as_str().parse().unwrap_or(f64::NAN)),
-        DeValue::Array(list) => {
-            let list: Vec<_> = list.iter().map(|entry| without_place(entry.get_ref())).collect();
+fn without_place(value: &Value) -> String {
+    match &value.is {
+        Is::Bool(x) => format!("Boolean({x})"),
+        Is::Whole(n) => format!("Integer({})", n.text),
+        Is::Number(x) => format!("Float({:?})", x.text.parse().unwrap_or(f64::NAN)),
+        Is::Text(text) => format!("String({text:?})"),
+        Is::Date(date) => format!("Datetime({date})"),
+        Is::List(list) => {
+            let list: Vec<_> = list.iter().map(without_place).collect();
             format!("Array([{}])", list.join(", "))
         }
-        DeValue::Table(table) => format!("Table({})", without_places(table)),
-        other => format!("{other:?}"),
+        Is::Table(table) => format!("Table({})", without_places(table)),
     }
 }

@@ -2,11 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use toml::de::DeValue;
-
 use super::columns::{RowFormula, each_once};
 use crate::problem::{Kind, Problem};
-use crate::reader::{KeyPath, Read, ReadError, Refusal, Shape, Value, read_by_keys};
+use crate::reader::{Is, KeyPath, Read, ReadError, Refusal, Shape, Value, read_by_keys};
 
 read_by_keys! {
     /// A figure that a scene asks for: a table, or the name of a column or a quantity alone.
@@ -32,13 +30,13 @@ pub(super) struct Entry(pub(super) PlotFigure);
 impl Read for Entry {
     const SHAPE: Shape = Shape::Or(&Shape::Text, &PlotFigure::SHAPE);
 
-    fn read(value: &Value<'_>) -> Result<Self, ReadError> {
-        match value.get_ref() {
-            DeValue::String(name) => {
-                let columns = vec![name.to_string()];
+    fn read(value: &Value) -> Result<Self, ReadError> {
+        match &value.is {
+            Is::Text(name) => {
+                let columns = vec![name.clone()];
                 Ok(Entry(PlotFigure { columns, ..PlotFigure::default() }))
             }
-            DeValue::Table(_) => PlotFigure::read(value).map(Entry),
+            Is::Table(_) => PlotFigure::read(value).map(Entry),
             _ => {
                 let expected = "the name of a column or of a quantity, or a table such as { columns = [\"x\"] }";
                 Err(ReadError::expected(value, expected))

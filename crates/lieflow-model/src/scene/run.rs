@@ -3,13 +3,6 @@
 use std::hash::{Hash, Hasher};
 use std::path::Path;
 
-use fnv::FnvHasher;
-use lieflow::StepControl;
-use lieflow::catalog::{MethodSpec, all_methods};
-use lieflow::samples::{Outside, Samples};
-use lieflow::{Error, SaveAt, TimeGrid};
-use toml::de::DeValue;
-
 use super::columns::{Columns, FORMULAS, RowFormula, each_once, with_formulas};
 use super::defaults::{self, Defaults, INTERVALS};
 use super::document::{Document, Finder, with_file};
@@ -22,8 +15,13 @@ use super::units::UnitKeys;
 use crate::kinds;
 use crate::problem::{FormulaKeys, KNOTS_MAX, Kind, Problem, SAMPLES};
 use crate::problem::{Layer, Model, Plan, Steps};
-use crate::reader::{KeyPath, Mistake, ReadError, Refusal, Tree, Value, seen};
+use crate::reader::{Is, KeyPath, Mistake, ReadError, Refusal, Tree, Value, seen};
 use crate::schema::{Schema, Units};
+use fnv::FnvHasher;
+use lieflow::StepControl;
+use lieflow::catalog::{MethodSpec, all_methods};
+use lieflow::samples::{Outside, Samples};
+use lieflow::{Error, SaveAt, TimeGrid};
 
 /// A run, stated in full and checked.
 #[derive(Debug)]
@@ -427,9 +425,9 @@ fn fitting(model: &Model) -> Vec<&'static str> {
 /// The kind of problem that a scene names.
 fn read_kind(document: &Document<'_>) -> Result<&'static Kind, ReadError> {
     let section = document.section("problem")?;
-    let kind = section.get_ref().get("kind");
-    let kind = kind.ok_or_else(|| Mistake::MissingKey(section.span(), "kind"))?;
-    let name = kind.get_ref().as_str();
+    let kind = section.get("kind");
+    let kind = kind.ok_or_else(|| Mistake::MissingKey(section.place.clone(), "kind"))?;
+    let name = kind.as_text();
     let name = name.ok_or_else(|| ReadError::expected(kind, "the name of a problem"))?;
     kinds::named(name).map_err(|error| Refusal::from(error).about("kind").into())
 }
@@ -440,7 +438,7 @@ fn read_problem(
     folder: Option<&Path>,
 ) -> Result<(Problem, Tree), ReadError> {
     let mut section = document.section("problem")?.clone();
-    if let DeValue::Table(keys) = section.get_mut() {
+    if let Is::Table(keys) = &mut section.is {
         keys.remove("kind");
     }
     let mut mistakes = ReadError::default();
@@ -455,11 +453,11 @@ fn read_problem(
 /// The events, where all of them can be used.
 fn read_events(
     finder: &mut Finder<'_, '_>,
-    entries: &[Value<'_>],
+    entries: &[Value],
     columns: Option<&Columns>,
 ) -> Option<Vec<SceneEvent>> {
     let names = entries.iter().map(|entry| {
-        let name = entry.get_ref().get("name").and_then(|name| name.get_ref().as_str());
+        let name = entry.get("name").and_then(Value::as_text);
         name.unwrap_or_default()
     });
     let names: Vec<&str> = names.collect();
