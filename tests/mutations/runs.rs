@@ -98,6 +98,10 @@ fn faults_of_dense_output_are_found() {
 }
 
 #[test]
+#[cfg_attr(
+    debug_assertions,
+    ignore = "a debug build refuses a wrong tableau before its first step"
+)]
 fn faults_of_steps_are_found() {
     let mut coefficient = DOPRI5;
     coefficient.a[4][2] += 1e-3;
