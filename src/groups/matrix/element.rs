@@ -10,8 +10,18 @@ use crate::space::{LinearSpace, Metric, Numbers};
 macro_rules! matrix_element {
     ($(#[$doc:meta])* $name:ident) => {
         $(#[$doc])*
-        #[derive(Clone, Debug, PartialEq)]
+        #[derive(Debug, PartialEq)]
         pub struct $name(Mat<f64>);
+
+        /// `clone_from` does not allocate where the sizes agree.
+        impl Clone for $name {
+            fn clone(&self) -> Self {
+                Self(self.0.clone())
+            }
+            fn clone_from(&mut self, x: &Self) {
+                self.0.copy_from(&x.0);
+            }
+        }
 
         impl $name {
             /// Takes the matrix without a check. A matrix outside of the set gives wrong numbers, but never undefined

@@ -23,12 +23,23 @@ use crate::space::{LinearSpace, Metric, Numbers};
 /// assert_eq!(x.get(1, 0), c64::new(1.0, 0.0));
 /// assert_eq!(ComplexMatrix::from(&x.to_complex()), x);
 /// ```
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug, PartialEq)]
 pub struct ComplexMatrix {
     /// The real part.
     pub re: Mat<f64>,
     /// The imaginary part, of the same size.
     pub im: Mat<f64>,
+}
+
+/// `clone_from` does not allocate where the sizes agree.
+impl Clone for ComplexMatrix {
+    fn clone(&self) -> Self {
+        ComplexMatrix { re: self.re.clone(), im: self.im.clone() }
+    }
+    fn clone_from(&mut self, x: &Self) {
+        self.re.copy_from(&x.re);
+        self.im.copy_from(&x.im);
+    }
 }
 
 impl From<&Mat<c64>> for ComplexMatrix {

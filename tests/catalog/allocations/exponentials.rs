@@ -1,9 +1,13 @@
 //! The exponentials allocate nothing once their storage is made, whatever approximant they choose.
 
 use faer::{Mat, c64};
+use lieflow::LieAlgebra;
 use lieflow::dense::{
     ComplexExponential, Exponential, ExponentialBatch, ExponentialF32, Structure,
 };
+use lieflow::groups::{MatrixGroup, Sample, Unitary};
+use rand::SeedableRng;
+use rand_pcg::Pcg64;
 
 /// The allocations of the second call: the product library makes its packing buffer at the first.
 fn allocations(mut f: impl FnMut() -> bool) -> usize {
@@ -61,4 +65,21 @@ fn storage_of_nine_matrices() {
         assert!(words <= 9 * n * n * 11 / 10, "{n}: {:.2} n²", words as f64 / (n * n) as f64);
         drop(exponential);
     }
+}
+
+/// A field that is a constant is written as `v.clone_from(&u)`.
+#[test]
+fn copies_of_matrices_allocate_nothing() {
+    let mut rng = Pcg64::seed_from_u64(3);
+    let so5 = MatrixGroup::so(5).expect("SO(5)");
+    let (u, mut v) = (so5.sample_algebra(&mut rng, 1.0), so5.zero());
+    assert_eq!(allocations(|| clone_into(&mut v, &u)), 0);
+    let u3 = Unitary::new(3).expect("U(3)");
+    let (u, mut v) = (u3.sample_algebra(&mut rng, 1.0), u3.zero());
+    assert_eq!(allocations(|| clone_into(&mut v, &u)), 0);
+}
+
+fn clone_into<T: Clone + PartialEq>(v: &mut T, u: &T) -> bool {
+    v.clone_from(u);
+    v == u
 }
