@@ -29,7 +29,7 @@ impl Scene {
         let (mut section, mut keys) = ("", Vec::new());
         let (mut t_span, mut dt, mut steps) = (None, None::<f64>, None::<f64>);
         for line in text.lines() {
-            if let Some(name) = line.strip_prefix('[').filter(|line| !line.starts_with('[')) {
+            if let Some(name) = line.strip_prefix('[') {
                 section = name.split(']').next().unwrap();
             } else if let Some((key, value)) = line.split_once(" = ")
                 && ["method", "time", "output"].contains(&section)
