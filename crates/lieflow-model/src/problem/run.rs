@@ -10,8 +10,9 @@ use lieflow::catalog::{MethodSpec, MethodsByName};
 use lieflow::groups::LieAlgebra;
 use lieflow::methods::{AnyMethod, Facts, Method, Within};
 use lieflow::names::same;
-use lieflow::problems::PointOf;
-use lieflow::solve::{Interpolant, Interrupted, Next, Solution, Status};
+use lieflow::problems::{PointOf, ScalarOf};
+use lieflow::scalar::Real;
+use lieflow::solve::{Interpolant, Interrupted, LONG_STEPS, Next, Solution, Status};
 use lieflow::space::Numbers;
 use lieflow::{Action, Direction, Error, Event, RunError, SaveAt, Solve, Stats};
 
@@ -336,6 +337,38 @@ pub(crate) fn curve_by<P: Runnable>(
     Ok(Box::new(CurveOf { points, row_of }))
 }
 
+/// Points within a long step.
+const WITHIN_LONG: f64 = 8.0;
+/// Points within a step for each radian that the start turns in it: later the motion may be faster.
+const FOR_EACH_RADIAN: f64 = 3.0;
+/// The most points within a step.
+const WITHIN_MOST: f64 = 100_000.0;
+
+/// The points within a step at which choices are followed. In short steps there are none.
+fn points_within<P: Runnable>(
+    problem: &Arc<P>,
+    method: &AnyMethod<P>,
+    y: &PointOf<P>,
+    steps: &Steps,
+    has_no_choices: bool,
+) -> u32 {
+    let order = method.facts(problem).order;
+    if has_no_choices || order < LONG_STEPS {
+        return 0;
+    }
+    let [t0, _] = steps.t_span();
+    let mut v = problem.group().zero();
+    problem.f(ScalarOf::<P>::lit(t0), y, &mut v, &mut problem.work());
+    let rate: f64 = problem.group().norm(&v).into();
+    let h = match steps {
+        Steps::Equal(grid) => grid.h().abs(),
+        // An exact motion takes the longest step that it may.
+        Steps::ByError { control, .. } if order == usize::MAX => control.longest_step(),
+        Steps::ByError { .. } => 0.0,
+    };
+    (FOR_EACH_RADIAN * h * rate).clamp(WITHIN_LONG, WITHIN_MOST).ceil() as u32
+}
+
 /// Integrate `problem` from `y` by the method that `spec` names: see [`Model::drive`](super::Model::drive).
 ///
 /// # Errors
@@ -361,6 +394,7 @@ pub(crate) fn drive_by<P: Runnable>(
         branches.borrow_mut().follow(t, &mut numbers);
     };
     let gap = schema.longest_gap();
+    let points = points_within(problem, &method, &y, &steps, branches.borrow().is_empty());
     let mut solve = Solve::shared(problem.clone(), method, steps.t_span()).save(save).stops(stops);
     solve = match steps {
         Steps::Equal(grid) => solve.grid(grid),
@@ -389,6 +423,14 @@ pub(crate) fn drive_by<P: Runnable>(
         });
     }
     let (fill, numbers) = (&fill, &numbers);
+    if points > 0 || branches.borrow().count_turns() {
+        // No zero: it sees each step before all events, where the choices are followed.
+        let follow = |t: f64, y: &PointOf<P>| {
+            fill(t, y);
+            1.0
+        };
+        solve = solve.event(Event::new("", follow).points(points));
+    }
     for (index, event) in events.into_iter().enumerate() {
         let EventPlan { name, value, direction, stop_after, points, change, .. } = event;
         let (watcher, branches, changes) = (&watcher, &branches, change.is_some());
@@ -420,14 +462,6 @@ pub(crate) fn drive_by<P: Runnable>(
             });
         }
         solve = solve.event(event);
-    }
-    if branches.borrow().count_turns() {
-        // No zero: it sees the end of each step, where the choices are followed.
-        let follow = |t: f64, y: &PointOf<P>| {
-            fill(t, y);
-            1.0
-        };
-        solve = solve.event(Event::new("", follow).points(0));
     }
     let solve = solve.progress(|t| watcher.borrow_mut().progress(t)).ends_of_steps(|t, y| {
         fill(t, y);

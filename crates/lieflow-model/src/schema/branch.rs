@@ -29,6 +29,9 @@ pub enum Branch {
     },
 }
 
+/// What differs by less from half a turn is half a turn; in turns.
+const HALF_TURN: f64 = 1e-6;
+
 impl Branch {
     /// Euler angles are singular where the second is so near to an end of its range.
     pub const SINGULAR: f64 = 1e-7;
@@ -45,6 +48,18 @@ impl Branch {
     pub fn longest_gap(self) -> Option<f64> {
         let Branch::HalfTurns { rate } = self else { return None };
         (rate > 0.0 && rate.is_finite()).then(|| 0.9 * FRAC_PI_2 / rate)
+    }
+
+    /// True if values that follow those `before` are so far from them that later ones should follow them instead.
+    fn is_far(self, before: &[f64], values: &[f64]) -> bool {
+        let pairs = || before.iter().zip(values);
+        match self {
+            Branch::Single => false,
+            Branch::Sign => pairs().map(|(a, b)| a * b).sum::<f64>() < 0.9,
+            Branch::HalfTurns { .. } | Branch::Euler { .. } => {
+                pairs().any(|(a, b)| (a - b).abs() > 0.2)
+            }
+        }
     }
 
     /// values ← the choice that is nearest to the values `before`; as they are, where one of these is NaN.
@@ -84,27 +99,34 @@ impl Branch {
                     a -= if low == rises { moved } else { -moved };
                     c = *c0;
                 }
-                let nearest = |x: f64, before: f64| x + TAU * ((before - x) / TAU).round();
+                // A half turn, which a pass through the singular angle gives, is one forward whatever its rounding.
+                let nearest =
+                    |x: f64, before: f64| x + TAU * ((before - x) / TAU - 0.5 + HALF_TURN).ceil();
                 values.copy_from_slice(&[nearest(a, *a0), b, nearest(c, *c0)]);
             }
         }
     }
 }
 
-/// The columns with choices, and their values at both ends of a step.
+/// The columns with choices, and their values in the last step.
 ///
-/// All points of a step follow its start, so that a value does not depend on which points were seen before it. A point that
-/// is further than all others is taken as the end of a step.
+/// Each point follows the last known one before it in the step, so that rows are continuous where neighbours are. Points
+/// that lie close to a known one are not kept: there the choice is the same. A point that is further than all others is
+/// taken as the end of a new step.
 #[derive(Clone, Debug)]
 pub(crate) struct Branches {
     columns: Vec<(Branch, Range<usize>)>,
     is_forward: bool,
     /// The time at the end of the step.
     front: f64,
-    /// The values of these columns at the start, one after the other; NaN before the first point.
-    start: Vec<f64>,
-    /// Those at the end.
+    /// The values of these columns at the end, one after the other. They have no choice yet, because what lies within the
+    /// step may be seen later.
     end: Vec<f64>,
+    /// The times of the known points from the start of the step on, and their values.
+    times: Vec<f64>,
+    known: Vec<f64>,
+    /// The values of a point, as they are followed.
+    values: Vec<f64>,
 }
 
 impl Branches {
@@ -112,14 +134,14 @@ impl Branches {
     pub(crate) fn new(schema: &Schema, [t0, t1]: [f64; 2]) -> Self {
         let with_choices = schema.iter().filter(|observable| observable.branch != Branch::Single);
         let columns: Vec<_> = with_choices.map(|o| (o.branch, o.places())).collect();
-        let count = columns.iter().map(|(_, places)| places.len()).sum();
-        let unknown = vec![f64::NAN; count];
         Branches {
             columns,
             is_forward: t1 > t0,
             front: f64::NAN,
-            start: unknown.clone(),
-            end: unknown,
+            end: Vec::new(),
+            times: Vec::new(),
+            known: Vec::new(),
+            values: Vec::new(),
         }
     }
 
@@ -133,41 +155,82 @@ impl Branches {
         self.columns.iter().any(|(branch, _)| *branch != Branch::Sign)
     }
 
-    /// numbers ← the row at t whose choices are nearest to those of the start of the step.
-    pub(crate) fn follow(&mut self, t: f64, numbers: &mut [f64]) {
-        let Branches { front, start, end, .. } = self;
-        let is_end = front.is_nan() || if self.is_forward { t > *front } else { t < *front };
-        if is_end {
-            start.copy_from_slice(end);
-            *front = t;
+    /// The values of all columns with choices in a row.
+    fn count(&self) -> usize {
+        self.columns.iter().map(|(_, places)| places.len()).sum()
+    }
+
+    /// Is `t` after `front`?
+    fn is_after(&self, t: f64, front: f64) -> bool {
+        if self.is_forward { t > front } else { t < front }
+    }
+
+    /// values ← the choice at t that is nearest to the last known point up to t. Returns true if it is far from that.
+    fn choose(&self, t: f64, values: &mut [f64]) -> bool {
+        let up_to = self.times.partition_point(|known| !self.is_after(*known, t));
+        if self.times.is_empty() {
+            return true;
         }
-        let mut first = 0;
+        let before = &self.known[up_to.saturating_sub(1) * values.len()..][..values.len()];
+        let (mut first, mut is_far) = (0, false);
         for (branch, places) in &self.columns {
             let place = first..first + places.len();
-            let values = &mut numbers[places.clone()];
-            branch.follow(&start[place.clone()], values);
-            // A point without values is skipped.
-            if is_end && values.iter().all(|x| x.is_finite()) {
-                end[place].copy_from_slice(values);
-            }
+            branch.follow(&before[place.clone()], &mut values[place.clone()]);
+            is_far |= branch.is_far(&before[place.clone()], &values[place]);
             first += places.len();
         }
+        is_far
+    }
+
+    /// numbers ← the row at t with the choices that go on from the points before it.
+    pub(crate) fn follow(&mut self, t: f64, numbers: &mut [f64]) {
+        if self.is_empty() {
+            return;
+        }
+        let mut values = core::mem::take(&mut self.values);
+        let places = || self.columns.iter().flat_map(|(_, places)| places.clone());
+        values.clear();
+        values.extend(places().map(|place| numbers[place]));
+        let has_values = values.iter().all(|x| x.is_finite());
+        if self.front.is_nan() || self.is_after(t, self.front) {
+            if !self.front.is_nan() && !self.end.is_empty() {
+                let mut start = core::mem::take(&mut self.end);
+                self.choose(self.front, &mut start);
+                (self.times, self.known) = (vec![self.front], start);
+            }
+            self.front = t;
+            // A point without values is skipped.
+            if has_values {
+                self.end.clone_from(&values);
+            }
+        }
+        let is_far = self.choose(t, &mut values);
+        for (place, value) in places().zip(&values) {
+            numbers[place] = *value;
+        }
+        if is_far && has_values && !self.times.is_empty() && t != self.front {
+            let at = self.times.partition_point(|known| !self.is_after(*known, t));
+            self.times.insert(at, t);
+            let first = at * values.len();
+            self.known.splice(first..first, values.iter().copied());
+        }
+        self.values = values;
     }
 
     /// Ends the step at t, where the numbers are these: what comes next starts there.
     pub(crate) fn cut(&mut self, t: f64, numbers: &[f64]) {
+        let places = self.columns.iter().flat_map(|(_, places)| places.clone());
+        self.end = places.map(|place| numbers[place]).collect();
+        (self.times, self.known) = (vec![t], self.end.clone());
         self.front = t;
-        let values = self.columns.iter().flat_map(|(_, places)| &numbers[places.clone()]);
-        for (end, value) in self.end.iter_mut().zip(values) {
-            *end = *value;
-        }
     }
 
-    /// The state of a run: that of its driver, and the last values after it.
+    /// The state of a run: that of its driver, and the values of the last step after it.
     pub(crate) fn append_to(&self, driver: &[u8]) -> Vec<u8> {
         let mut bytes = driver.to_vec();
         if !self.is_empty() {
-            let numbers = self.start.iter().chain(&self.end).chain([&self.front]);
+            let counts = [self.front, self.end.len() as f64, self.times.len() as f64];
+            let numbers = self.times.iter().chain(&self.known).chain(&self.end).chain(&counts);
             numbers.for_each(|x| bytes.extend(x.to_le_bytes()));
         }
         bytes
@@ -176,13 +239,26 @@ impl Branches {
     /// Goes on from [`append_to`](Self::append_to); the state of the driver. Bytes that are too short are left to the
     /// driver to refuse.
     pub(crate) fn take_from(&mut self, mut bytes: Vec<u8>) -> Vec<u8> {
-        let count = if self.is_empty() { 0 } else { self.start.len() + self.end.len() + 1 };
-        let Some(of_driver) = bytes.len().checked_sub(8 * count) else { return bytes };
-        let places = self.start.iter_mut().chain(&mut self.end).chain([&mut self.front]);
-        for (x, bytes) in places.zip(bytes[of_driver..].chunks_exact(8)) {
-            *x = f64::from_le_bytes(bytes.try_into().unwrap_or_default());
+        if self.is_empty() {
+            return bytes;
         }
-        bytes.truncate(of_driver);
+        let count = self.count();
+        let mut last = |count: usize| -> Option<Vec<f64>> {
+            let start = bytes.len().checked_sub(count.checked_mul(8)?)?;
+            let number = |bytes: &[u8]| f64::from_le_bytes(bytes.try_into().unwrap_or_default());
+            let numbers = bytes[start..].chunks_exact(8).map(number).collect();
+            bytes.truncate(start);
+            Some(numbers)
+        };
+        let mut taken = || {
+            let [front, end, points] = last(3)?[..] else { return None };
+            let (end, points) = (last(end as usize)?, points as usize);
+            let known = last(points.checked_mul(count)?)?;
+            Some((front, end, known, last(points)?))
+        };
+        if let Some((front, end, known, times)) = taken() {
+            (self.front, self.end, self.known, self.times) = (front, end, known, times);
+        }
         bytes
     }
 }

@@ -122,6 +122,42 @@ fn a_quaternion_has_no_jump() {
     }
 }
 
+/// Steps in which a body turns many times: rows are continuous, and events see the motion that rows show.
+#[test]
+fn long_steps_lose_no_turn() {
+    let run = |steps: &str| {
+        let text = format!(
+            "[problem]\nkind = \"rigid-body\"\ninertia = [1, 2, 3]\nomega_body = [0.1, 1, 0.2]\n[time]\n\
+             t_span = [0, 200]\n{steps}\n[[events]]\nname = \"turn\"\nwhen = \"qz\"\n[[events]]\n\
+             name = \"angle\"\nwhen = \"euler_zyx1 - 1\"\n[output]\n\
+             quantities = [\"quaternion\", \"euler_zyx\"]\ninterval = 0.05\n"
+        );
+        let scene = Scene::parse("turns", &text).unwrap();
+        let model = scene.model().unwrap();
+        let mut shown = Shown::default();
+        model.drive(&scene.method, scene.plan(model.schema()).unwrap(), &mut shown).unwrap();
+        for rows in shown.rows.windows(2) {
+            let moved: f64 = (1..5).map(|k| (rows[1][k] - rows[0][k]).powi(2)).sum();
+            assert!(moved < 0.01, "{steps}: {rows:?}");
+            let turned = [5, 7].map(|k| (rows[1][k] - rows[0][k]).abs());
+            assert!(turned.iter().all(|x| *x < PI + 0.1), "{steps}: {rows:?}");
+        }
+        shown.turns
+    };
+    let expected = run("rtol = 1e-12");
+    assert!(expected.len() > 30);
+    for steps in [
+        "dt = 50\n[method]\nname = \"exact\"",
+        "dt = 7\n[method]\nname = \"exact\"",
+        "rtol = 1e-9\n[method]\nname = \"exact\"",
+        "rtol = 1e-12\n[method]\nname = \"taylor12\"",
+    ] {
+        let turns = run(steps);
+        assert_eq!(turns.len(), expected.len(), "{steps}: {turns:?}");
+        assert!(far(&turns, &expected) < 1e-7, "{steps}: {turns:?}");
+    }
+}
+
 /// A torque is stated along the axes of the scene, whatever the principal ones are: l̇ = gτ.
 #[test]
 fn torques_are_along_the_axes_of_the_scene() {

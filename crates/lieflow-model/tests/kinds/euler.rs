@@ -127,7 +127,7 @@ fn angles_go_on_beyond_the_singular_one() {
     }
 }
 
-/// A row and an event follow the start of their step: what events look at changes no row, also where a path goes exactly
+/// A row and an event follow the points before them: what events look at changes no row, also where a path goes exactly
 /// through the singular angle, and the third angle jumps by half a turn.
 #[test]
 fn events_change_no_angle_of_a_row() {
