@@ -55,6 +55,43 @@ fn a_scene_decides_its_figures_their_order_and_their_words() {
     }
 }
 
+/// Names of formulas are figures in their order: a vector is one, others are not joined by what their names share. The
+/// words of a scene stay, also where a figure hardly changes or another formula is large.
+#[test]
+fn formulas_are_drawn_in_their_order_with_the_words_of_the_scene() {
+    let folder = Folder::new();
+    let keys = "plot = [\"pop2\", \"v3\", \"high\", \"pop1\", \"v1\", \
+                { columns = [\"high\"], y_label = \"mine (V)\" }, { columns = [\"pop1\"], title = \"mine\" }]\n\
+                [output.formulas]\nhigh = \"1e3 + m1\"\npop1 = \"m1\"\npop2 = \"m2\"\nv = \"[m3, m1, m2]\"";
+    folder.write("scene.toml", &with_output(keys));
+    folder.lieflow(&["run", "scene.toml", "--out", "out"]).ok();
+    let figure = |number: usize| {
+        folder.read(&format!(
+            "out/plot{}.svg",
+            match number {
+                1 => String::new(),
+                _ => format!("-{number}"),
+            }
+        ))
+    };
+    for (number, title, series) in [
+        (1, "pop₂", &["pop₂"][..]),
+        (2, "v", &["v₁", "v₃"]),
+        (3, "high: how far it is from its start", &["high"]),
+        (4, "pop₁", &["pop₁"]),
+        (6, "high", &["high"]),
+        (7, "mine", &["pop₁"]),
+    ] {
+        let figure = figure(number);
+        assert!(figure.contains(&format!(">{title}<")), "{number}: {title}");
+        assert_eq!(figure.matches("lf-dense\" tabindex=\"-1\" data-series=").count(), series.len());
+        for series in series {
+            assert!(figure.contains(&format!("data-series=\"{series}\"")), "{number}: {series}");
+        }
+    }
+    assert!(figure(6).contains(">mine (V)<") && !figure(6).contains("from its start"));
+}
+
 #[test]
 fn several_runs_are_drawn_in_one_figure() {
     let folder = Folder::new();

@@ -87,12 +87,16 @@ impl Names {
     pub fn entries_of<'a>(
         &'a self,
         lets: &'a Lets,
-    ) -> impl Iterator<Item = (String, Formula)> + 'a {
+    ) -> impl Iterator<Item = (&'a str, String, Formula)> + 'a {
         lets.names().flat_map(move |name| {
             let of_this = move |entry: &&Entry| lets.of(&entry.name) == Some(name);
             let entries = self.formulas.iter().filter(of_this);
             entries.map(|Entry { name, key, text, tape }| {
-                (name.clone(), Formula::of(tape.clone(), key, text, self))
+                (
+                    lets.of(name).unwrap_or(name),
+                    name.clone(),
+                    Formula::of(tape.clone(), key, text, self),
+                )
             })
         })
     }

@@ -8,7 +8,7 @@ use crate::formula::{Formula, Lets, Names, Parameters};
 use crate::problem::Model;
 use crate::problem::{FormulaKeys, Problem};
 use crate::reader::{Mistakes, Read, ReadError, Refusal, Tree, read_by_keys, seen};
-use crate::schema::{Row, Schema};
+use crate::schema::{Component, Measure, Row, Schema};
 
 /// The name of the quantity that `[output.formulas]` is.
 pub(super) const FORMULAS: &str = "formulas";
@@ -87,6 +87,17 @@ impl OnRows {
         }
         self.formula.value(&variables)
     }
+}
+
+/// A column of `[output.formulas]`.
+#[derive(Clone, Debug)]
+pub(super) struct FormulaColumn {
+    /// The name of the formula: v of v1.
+    of: String,
+    /// The name of the column.
+    pub(super) name: String,
+    /// Its value in a row.
+    pub(super) formula: RowFormula,
 }
 
 /// Of a quantity with more columns than these, the first are listed.
@@ -170,11 +181,16 @@ impl Columns {
     ///
     /// # Errors
     /// The mistakes in the formulas.
-    pub(super) fn define(&mut self, lets: &Lets) -> Result<Vec<(String, RowFormula)>, ReadError> {
+    pub(super) fn define(&mut self, lets: &Lets) -> Result<Vec<FormulaColumn>, ReadError> {
         self.names = core::mem::take(&mut self.names).with_lets(FORMULAS, lets);
         self.names.take_mistakes()?;
         let entries = self.names.entries_of(lets);
-        Ok(entries.map(|(name, formula)| (name, self.of_rows(formula))).collect())
+        let column = |(of, name, formula): (&str, String, _)| FormulaColumn {
+            of: of.into(),
+            name,
+            formula: self.of_rows(formula),
+        };
+        Ok(entries.map(column).collect())
     }
 
     /// A formula, or the name of a column alone.
@@ -218,12 +234,24 @@ impl Columns {
 pub(super) fn with_formulas(
     base: Model,
     count: usize,
-    formulas: &[(String, RowFormula)],
+    formulas: &[FormulaColumn],
 ) -> Result<Model, Error> {
     let mut schema = base.schema().first(count);
     let width = schema.columns().count();
-    schema.push(FORMULAS, formulas.iter().map(|(name, _)| name.clone()).collect(), None, false);
-    let formulas = formulas.iter().map(|(_, formula)| formula.on(base.schema()));
+    schema.push(FORMULAS, formulas.iter().map(|column| column.name.clone()).collect(), None, false);
+    let mut first = 0;
+    let parts = formulas.chunk_by(|a, b| a.of == b.of).map(|columns| {
+        let place = first..first + columns.len();
+        first = place.end;
+        Component {
+            name: columns[0].of.clone(),
+            what: "",
+            columns: place,
+            measure: Measure::Length,
+        }
+    });
+    schema.set_parts(parts.collect());
+    let formulas = formulas.iter().map(|column| column.formula.on(base.schema()));
     let formulas = formulas.collect::<Result<Vec<_>, _>>()?;
     let number = move |place: usize, t: f64, row: Row<'_>| match place.checked_sub(width) {
         None => row.values()[place],

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::columns::{RowFormula, each_once};
+use super::columns::{FormulaColumn, each_once};
 use crate::problem::{Kind, Problem};
 use crate::reader::{Is, KeyPath, Read, ReadError, Refusal, Shape, Value, read_by_keys};
 
@@ -75,10 +75,10 @@ pub(super) fn check_plot(
     plot: &[PlotFigure],
     problem: &Problem,
     quantities: &[String],
-    formulas: &[(String, RowFormula)],
+    formulas: &[FormulaColumn],
 ) -> Result<(), ReadError> {
     let columns = quantities.iter().flat_map(|name| problem.columns(name).unwrap_or_default());
-    let derived = formulas.iter().map(|(name, _)| name.clone());
+    let derived = formulas.iter().map(|column| column.name.clone());
     let columns: Vec<String> = columns.chain(derived).collect();
     let names = || quantities.iter().chain(&columns).map(String::as_str);
     // There may be hundreds of thousands.

@@ -3,7 +3,7 @@
 use std::hash::{Hash, Hasher};
 use std::path::Path;
 
-use super::columns::{Columns, FORMULAS, RowFormula, each_once, with_formulas};
+use super::columns::{Columns, FORMULAS, FormulaColumn, each_once, with_formulas};
 use super::defaults::{self, Defaults, INTERVALS};
 use super::document::{Document, Finder, with_file};
 use super::error::SceneError;
@@ -67,7 +67,7 @@ pub struct Scene {
     /// The text of its file, without settings.
     file: String,
     /// The columns of `[output.formulas]`.
-    formulas: Vec<(String, RowFormula)>,
+    formulas: Vec<FormulaColumn>,
     /// The figures to draw. Empty if the kind chooses.
     pub plot: Vec<PlotFigure>,
     /// A number of what the scene states, with its samples: another one for another scene. Comments and spaces do not
@@ -375,7 +375,7 @@ impl Scene {
 
     /// The quantities that `[output.formulas]` is made of.
     fn of_formulas(&self) -> impl Iterator<Item = &str> {
-        self.formulas.iter().flat_map(|(_, formula)| formula.quantities())
+        self.formulas.iter().flat_map(|column| column.formula.quantities())
     }
 
     /// The problem on the layer of the scene, with the quantities of the scene.

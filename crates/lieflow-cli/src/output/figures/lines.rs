@@ -45,7 +45,7 @@ impl<'a> Column<'a> {
     }
 
     /// The columns that belong together with it.
-    fn part(self) -> Range<usize> {
+    pub(super) fn part(self) -> Range<usize> {
         let part = self.quantity.parts.iter().find(|part| part.columns.contains(&self.index));
         part.map_or(self.index..self.index + 1, |part| part.columns.clone())
     }
@@ -59,6 +59,8 @@ pub(super) struct Shown<'a> {
     /// The units of both axes; empty where they are not known.
     pub(super) units: [String; 2],
     pub(super) columns: Vec<Column<'a>>,
+    /// True if values are drawn as they are, also where they hardly change: the scene has words for the figure.
+    pub(super) as_they_are: bool,
 }
 
 /// The figures of a quantity: of the columns that are wanted, or of all. Those after the first few are in a fold.
@@ -144,6 +146,7 @@ fn parts_of<'a>(
         axes: ["t".into(), axis],
         units: [units.of(Dimension::TIME).unwrap_or_default(), unit.clone()],
         columns: columns.iter().map(|&index| Column { quantity, index }).collect(),
+        as_they_are: false,
     };
     let is_wanted = |i: &usize| {
         wanted.is_empty() || wanted.iter().any(|name| *name == names[*i] || name == quantity.name)
@@ -238,7 +241,7 @@ pub(super) fn figure(
     rows: &RowSample<'_>,
     summary: &Summary,
 ) -> Drawn {
-    let Shown { title, axes: [x, y], units: [of_x, of_y], columns } = shown;
+    let Shown { title, axes: [x, y], units: [of_x, of_y], columns, as_they_are } = shown;
     let sizes = sizes(columns, rows);
     let curve = |(column, &size): (&Column<'_>, &f64)| {
         let point = |(t, row): (f64, Row<'_>)| (t, column.of(row));
@@ -262,7 +265,7 @@ pub(super) fn figure(
     let changes = curves.iter().map(change).fold(0.0, f64::max);
     let size = sizes.iter().copied().fold(0.0, f64::max);
     let (mut title, mut y) = (title.clone(), y.clone());
-    if changes < NEARLY * size {
+    if changes < NEARLY * size && !as_they_are {
         title += ": how far it is from its start";
         y += &match &curves[..] {
             [only] => format!(" − {}", short(start(only), 6)),

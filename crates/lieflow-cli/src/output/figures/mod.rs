@@ -10,6 +10,8 @@ mod words;
 pub use sample::{RowSample, Sample};
 pub use together::{Written, together, unit_of};
 
+use core::ops::Range;
+
 use lieflow_figures::number::{seconds, short, sig};
 use lieflow_figures::{
     self as figures, Axis, Block, Body, Cell, Chart, Column as TableColumn, Ground, Heat,
@@ -199,12 +201,13 @@ fn asked_for(summary: &Summary, run: &Drawn<'_>, is_line: bool) -> Vec<Figured> 
             asked.columns.iter().flat_map(|name| of_name(name)).collect();
         let Some(Column { quantity, .. }) = columns.first().copied() else { continue };
         if asked.is_name() {
-            // The names of one quantity are one figure, at the place of the first.
-            if !drawn.contains(&quantity.name) {
-                drawn.push(quantity.name);
-                let of_quantity =
-                    names.iter().filter(|(_, column)| column.quantity.name == quantity.name);
-                let wanted: Vec<String> = of_quantity.map(|(name, _)| (*name).into()).collect();
+            // The names of one quantity, or of one formula, are one figure, at the place of the first.
+            let group = group(kind, &columns[0]);
+            if !drawn.contains(&group) {
+                let of_group =
+                    names.iter().filter(|(_, column)| self::group(kind, column) == group);
+                let wanted: Vec<String> = of_group.map(|(name, _)| (*name).into()).collect();
+                drawn.push(group);
                 figures.extend(against_time(&id, kind, quantity, run.rows, &wanted, summary));
             }
             continue;
@@ -235,7 +238,8 @@ fn asked_for(summary: &Summary, run: &Drawn<'_>, is_line: bool) -> Vec<Figured> 
             [(&asked.x_label, x, units[0].clone()), (&asked.y_label, named, units[1].clone())].map(
                 |(asked, name, unit)| asked.clone().map_or((name, unit), |l| (l, String::new())),
             );
-        let shown = Shown { title, axes: [x, y], units: [x_unit, y_unit], columns };
+        let as_they_are = asked.title.is_some() || asked.y_label.is_some();
+        let shown = Shown { title, axes: [x, y], units: [x_unit, y_unit], columns, as_they_are };
         figures.push(match against {
             None => figure(&id, &shown, run.rows, summary),
             Some(against) => Figured::Narrow(curves(&id, &shown, against, run.rows)),
@@ -244,9 +248,18 @@ fn asked_for(summary: &Summary, run: &Drawn<'_>, is_line: bool) -> Vec<Figured> 
     figures
 }
 
+/// The columns that are one figure with this one, where they are asked for one by one.
+fn group(kind: &problem::Kind, column: &Column<'_>) -> (&'static str, Range<usize>) {
+    let name = column.quantity.name;
+    match kind.quantity(name) {
+        Ok(_) => (name, 0..column.quantity.columns.len()),
+        Err(_) => (name, column.part()),
+    }
+}
+
 /// Columns against another column.
 fn curves(id: &str, shown: &Shown<'_>, against: Column<'_>, rows: &RowSample<'_>) -> Chart {
-    let Shown { title, axes: [x, y], units: [of_x, of_y], columns } = shown;
+    let Shown { title, axes: [x, y], units: [of_x, of_y], columns, .. } = shown;
     let line = |(colour, column): (usize, &Column<'_>)| {
         let points = rows.rows().map(|(_, row)| (against.of(row), column.of(row)));
         Series::line(words::column(column.name()), colour, points)

@@ -15,9 +15,12 @@ pub(super) fn title(kind: &Kind, quantity: &Observable) -> String {
     letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }
 
-/// The title of a part of a composed system.
+/// The title of a part of a composed system, or of a formula.
 pub(super) fn of_part(part: &Component) -> String {
-    format!("The {} {}", part.what, part.name.replace('_', " "))
+    match part.what {
+        "" => column(&part.name),
+        what => format!("The {what} {}", part.name.replace('_', " ")),
+    }
 }
 
 /// The first clause of a meaning, with the further parts of a list: "real parts, then imaginary parts".
