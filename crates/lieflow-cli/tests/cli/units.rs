@@ -157,7 +157,11 @@ fn likely_degrees_are_noted() {
     );
     let likely = noted(SI, "[0.1, 40, 20]", "", "interval = 0.5");
     assert!(likely.contains("3.6 times from row to row, 0.5 s"), "{likely}");
+    let likely = noted(SI, "[5, 20, 1]", "", "");
+    assert!(likely.contains("3.3 times in a second") && likely.contains("20*deg"), "{likely}");
     for (units, omega, time, output) in [
+        (SI, "[0.5, 5, 1]", "", ""),
+        ("", "[5, 20, 1]", "", ""),
         ("", "[0.1, 0.5, 0.2]", "dt = 0.5", ""),
         // As many turns, on purpose.
         ("", "[0.1, \"40*rad\", 20]", "dt = 0.5", ""),

@@ -74,6 +74,18 @@ pub(super) fn parse(text: &str, names: &Names) -> Result<Parsed, Mistake> {
     Ok(Parsed { rows: root.rows, entries: Option::ok_or_else(entries, too_long)? })
 }
 
+/// The number at the end of a text, as in `2*1e-5`.
+fn number_at_end(text: &[char]) -> Option<String> {
+    let text: String = text.iter().collect();
+    let text = text.trim_end();
+    let starts = text.char_indices().filter(|(at, c)| {
+        let is_within = text[..*at].ends_with(|c: char| continues_name(c) || c == '.');
+        !is_within && c.is_ascii_digit()
+    });
+    let mut rests = starts.map(|(at, _)| &text[at..]);
+    rests.find(|rest| rest.parse::<f64>().is_ok()).map(str::to_owned)
+}
+
 struct Parser<'a> {
     text: &'a [char],
     names: &'a Names,
@@ -160,11 +172,19 @@ impl Parser<'_> {
         if first.is_empty() || second.is_empty() {
             return "a product is written 2*x".into();
         }
-        match angle_unit(&second) {
-            true => {
+        let is_call = next.get(second.chars().count()) == Some(&'(');
+        let is_known = self.names.varies(&second) || self.names.meaning(&second).is_some();
+        match (angle_unit(&second), number_at_end(before)) {
+            (true, _) => {
                 format!("write {first}*{second}; other units than those of angles are left out")
             }
-            false => format!("a product is written {first}*{second}"),
+            (false, Some(number)) if !is_call && !is_known => match second.as_str() {
+                "i" | "j" => format!(
+                    "formulas are real: an imaginary part {number} has a key of its own, as in hamiltonian_imaginary"
+                ),
+                _ => format!("write {number}; units are left out, but for those of angles"),
+            },
+            _ => format!("a product is written {first}*{second}"),
         }
     }
 

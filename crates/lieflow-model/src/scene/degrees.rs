@@ -21,7 +21,8 @@ impl Scene {
     }
 
     /// The note where a body turns more than once in a step of the scene. A body that spins fast is right, too. So nothing
-    /// is said where the start is a formula, where each point is exact, and of rows, but where the time is in seconds.
+    /// is said where the start is a formula, where each point is exact, and of rows, but where the time is in seconds. There
+    /// more than a turn in a second is told, too.
     fn likely_in_degrees(&self) -> Option<String> {
         let rate = self.problem.rate()?;
         let Tree::Table(keys) = &self.keys else { return None };
@@ -44,6 +45,10 @@ impl Scene {
                 if in_seconds && !self.by_default.rows && rate > 1.0 =>
             {
                 (format!("from row to row, {interval} s"), *interval)
+            }
+            // Rows that nobody chose say nothing.
+            _ if in_seconds && self.by_default.rows && self.adaptive.is_some() => {
+                ("in a second".into(), 1.0)
             }
             _ => return None,
         };

@@ -119,6 +119,9 @@ fn formulas_that_are_no_numbers_are_refused_at_their_character() {
     const LINE: &str = "inertia = [1, 2, ";
     for (formula, column, words) in [
         ("5 deg", 21, &["\"5 deg\" is not a number: found `d`", "= write 5*deg"][..]),
+        ("1e-5 N m s", 24, &["write 1e-5; units are left out, but for those of angles"]),
+        ("2*0.1 s", 25, &["write 0.1; units are left out"]),
+        ("1j*w", 20, &["an imaginary part 1 has a key of its own"]),
         ("5 deg/s", 21, &["write 5*deg", "other units than those of angles are left out"]),
         ("5deg", 20, &["write 5*deg"]),
         ("5°", 20, &["found `°`", "degrees are written 5*deg"]),

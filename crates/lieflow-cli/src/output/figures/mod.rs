@@ -101,8 +101,8 @@ pub fn run_page(summary: &Summary, run: &Drawn<'_>) -> Page {
         Section::new("Over time", charts),
     ];
     if !run.watched.is_empty() {
-        let invariants =
-            vec![drift_table(summary), Block::Chart(drifts(summary, run.watched, run.rows))];
+        let mut invariants = vec![drift_table(summary)];
+        invariants.extend(drifts(summary, run.watched, run.rows));
         sections.push(Section::new("What the exact motion conserves", invariants));
     }
     let text = vec![Block::Code(run.scene.text.clone())];
@@ -524,13 +524,16 @@ fn drift_table(summary: &Summary) -> Block {
     }
 }
 
-/// |value − initial| of the invariants against time.
-fn drifts(summary: &Summary, watched: &[&Observable], rows: &RowSample<'_>) -> Chart {
+/// |value − initial| of the invariants against time, in a fold where it is rounding alone. None where nothing changes.
+fn drifts(summary: &Summary, watched: &[&Observable], rows: &RowSample<'_>) -> Option<Block> {
     let all = watched
         .iter()
         .flat_map(|law| law.columns.iter().enumerate().map(move |(i, column)| (law, i, column)));
-    let mut all: Vec<_> = all.collect();
     let moved = |column: &str| summary.drift.get(column).map_or(0.0, |drift| drift.max);
+    let (mut all, constant): (Vec<_>, Vec<_>) = all.partition(|(.., column)| moved(column) != 0.0);
+    if all.is_empty() {
+        return None;
+    }
     all.sort_by(|(.., a), (.., b)| moved(b).total_cmp(&moved(a)));
     let told = match all.len() {
         ..=LINES => String::new(),
@@ -545,6 +548,15 @@ fn drifts(summary: &Summary, watched: &[&Observable], rows: &RowSample<'_>) -> C
     });
     let axes = [Axis::linear("t"), Axis::log("|value − value at the start|")];
     let chart = Chart::new("drift", "Drifts of the invariants", axes, series);
-    let caption = format!("A change of exactly 0 cannot be drawn on this axis.{told}");
-    marked(chart.with_caption(caption), summary)
+    let mut caption = format!("A change of exactly 0 cannot be drawn on this axis.{told}");
+    if !constant.is_empty() {
+        let names: Vec<String> =
+            constant.iter().map(|(.., column)| words::column(column)).collect();
+        caption += &format!(" Without any change: {}.", names.join(", "));
+    }
+    let chart = Block::Chart(marked(chart.with_caption(caption), summary));
+    Some(match summary.drift.values().all(|drift| drift.max <= drift.rounding) {
+        true => Block::fold("All changes are rounding alone: against time", vec![chart]),
+        false => chart,
+    })
 }
