@@ -437,11 +437,23 @@ fn sphere(id: String, title: String, run: &Drawn<'_>) -> Sphere {
         let squares = |row| at(k, row).iter().map(|x| x * x).sum::<f64>();
         rows.ends().map_or(1.0, |[(_, row), _]| squares(row).sqrt())
     };
-    let path = |k: usize| {
-        let length = length(k);
-        let points = rows.rows().map(|(_, row)| at(k, row).map(|x| x / length));
-        points.collect::<Vec<_>>()
+    let paths_of = |rows: &[(f64, Row<'_>)]| -> Vec<Vec<[f64; 3]>> {
+        let path = |k: usize| {
+            let length = length(k);
+            rows.iter().map(|(_, row)| at(k, *row).map(|x| x / length)).collect()
+        };
+        (0..triples.min(LINE_COLOURS)).map(path).collect()
     };
+    // Of many rows some are kept, which may be far apart where the first ones are not.
+    let (whole, first): (Vec<_>, Vec<_>) = (rows.rows().collect(), rows.first().collect());
+    let (mut points, mut shown) = (paths_of(&whole), String::new());
+    let beginning = paths_of(&first);
+    let is_far_apart = |paths: &[Vec<[f64; 3]>]| paths.iter().any(|path| is_far_apart(path));
+    if is_far_apart(&points) && !is_far_apart(&beginning) {
+        let [start, end] = [&first[0], &first[first.len() - 1]].map(|(t, _)| short(*t, 4));
+        shown = format!("Shown is t = {start} to {end}.");
+        points = beginning;
+    }
     let name = |k: usize| match triples {
         _ if quantity.parts.len() == triples && !quantity.parts[k].name.is_empty() => {
             quantity.parts[k].name.clone()
@@ -449,9 +461,8 @@ fn sphere(id: String, title: String, run: &Drawn<'_>) -> Sphere {
         1 => words::on_axis(quantity),
         _ => words::path(quantity, &quantity.columns[3 * k..3 * k + 3], k + 1),
     };
-    let paths: Vec<Path> = (0..triples.min(LINE_COLOURS))
-        .map(|k| Path { name: name(k), colour: k, points: path(k) })
-        .collect();
+    let path = |(k, points)| Path { name: name(k), colour: k, points };
+    let paths: Vec<Path> = points.into_iter().enumerate().map(path).collect();
     // From the side of the equator that the paths are on.
     let height: f64 = paths.iter().flat_map(|path| &path.points).map(|x| x[2]).sum();
     // A free body keeps its energy: its momentum is on an ellipsoid too.
@@ -474,8 +485,10 @@ fn sphere(id: String, title: String, run: &Drawn<'_>) -> Sphere {
         true => "",
         false => "Each vector is divided by its length at the start.",
     };
-    let caption =
-        format!("{} {scaled} {surfaces}", said(quantity.name, triples.min(LINE_COLOURS), triples));
+    let caption = format!(
+        "{} {shown} {scaled} {surfaces}",
+        said(quantity.name, triples.min(LINE_COLOURS), triples)
+    );
     Sphere {
         id,
         title,
@@ -485,6 +498,12 @@ fn sphere(id: String, title: String, run: &Drawn<'_>) -> Sphere {
         caption: caption.trim().into(),
         view: (35.0, if height < 0.0 { -25.0 } else { 25.0 }),
     }
+}
+
+/// Are there neighbours on a path on the unit sphere that a line cannot join?
+fn is_far_apart(path: &[[f64; 3]]) -> bool {
+    let square = |pair: &[[f64; 3]]| (0..3).map(|i| (pair[1][i] - pair[0][i]).powi(2)).sum::<f64>();
+    path.windows(2).any(|pair| square(pair) > 1.0)
 }
 
 fn drift_table(summary: &Summary) -> Block {
