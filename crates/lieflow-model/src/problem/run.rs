@@ -337,8 +337,8 @@ pub(crate) fn curve_by<P: Runnable>(
     Ok(Box::new(CurveOf { points, row_of }))
 }
 
-/// Points within a long step.
-const WITHIN_LONG: f64 = 8.0;
+/// The least points within a long step, in which a body turns by some radians.
+const WITHIN_LONG: f64 = 3.0;
 /// Points within a step for each radian that the start turns in it: later the motion may be faster.
 const FOR_EACH_RADIAN: f64 = 3.0;
 /// The most points within a step.
