@@ -35,10 +35,11 @@ pub fn run(args: &PlotArgs) -> Result<(), CliError> {
         Page::new(title, subtitle, vec![Section::new("Over time", together(&runs, &columns))]);
     output::make_folder(&args.out)?;
     let path = output::write_page(&args.out, "index.html", &page)?;
+    let counted = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
     output::print(&format!(
-        "{} columns of {} runs: {}\n",
-        columns.len(),
-        runs.len(),
+        "{} of {}: {}\n",
+        counted(columns.len(), "column"),
+        counted(runs.len(), "run"),
         path.display()
     ))
 }

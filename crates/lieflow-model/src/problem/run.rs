@@ -362,8 +362,7 @@ fn points_within<P: Runnable>(
     let rate: f64 = problem.group().norm(&v).into();
     let h = match steps {
         Steps::Equal(grid) => grid.h().abs(),
-        // An exact motion takes the longest step that it may.
-        Steps::ByError { control, .. } if order == usize::MAX => control.longest_step(),
+        // Steps that are chosen turn by some radians at most.
         Steps::ByError { .. } => 0.0,
     };
     (FOR_EACH_RADIAN * h * rate).clamp(WITHIN_LONG, WITHIN_MOST).ceil() as u32

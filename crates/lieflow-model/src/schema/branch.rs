@@ -2,6 +2,7 @@
 
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 use core::ops::Range;
+use std::collections::BTreeMap;
 
 use super::Schema;
 
@@ -56,9 +57,8 @@ impl Branch {
         match self {
             Branch::Single => false,
             Branch::Sign => pairs().map(|(a, b)| a * b).sum::<f64>() < 0.9,
-            Branch::HalfTurns { .. } | Branch::Euler { .. } => {
-                pairs().any(|(a, b)| (a - b).abs() > 0.2)
-            }
+            Branch::HalfTurns { .. } => pairs().any(|(a, b)| (a - b).abs() > 0.3),
+            Branch::Euler { .. } => pairs().any(|(a, b)| (a - b).abs() > 1.0),
         }
     }
 
@@ -108,6 +108,24 @@ impl Branch {
     }
 }
 
+/// The most known points of a step.
+const KNOWN_MOST: usize = 200_000;
+
+/// A time, or its negative in a run backward, as a number whose order is that of the times.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Moment(i64);
+
+impl Moment {
+    fn of(time: f64) -> Self {
+        let bits = time.to_bits().cast_signed();
+        Moment(if bits < 0 { bits ^ i64::MAX } else { bits })
+    }
+    fn time(self) -> f64 {
+        let bits = if self.0 < 0 { self.0 ^ i64::MAX } else { self.0 };
+        f64::from_bits(bits.cast_unsigned())
+    }
+}
+
 /// The columns with choices, and their values in the last step.
 ///
 /// Each point follows the last known one before it in the step, so that rows are continuous where neighbours are. Points
@@ -122,9 +140,8 @@ pub(crate) struct Branches {
     /// The values of these columns at the end, one after the other. They have no choice yet, because what lies within the
     /// step may be seen later.
     end: Vec<f64>,
-    /// The times of the known points from the start of the step on, and their values.
-    times: Vec<f64>,
-    known: Vec<f64>,
+    /// The known points by their [`Moment`], from the start of the step on: the values at each.
+    known: BTreeMap<Moment, Box<[f64]>>,
     /// The values of a point, as they are followed.
     values: Vec<f64>,
 }
@@ -139,8 +156,7 @@ impl Branches {
             is_forward: t1 > t0,
             front: f64::NAN,
             end: Vec::new(),
-            times: Vec::new(),
-            known: Vec::new(),
+            known: BTreeMap::new(),
             values: Vec::new(),
         }
     }
@@ -167,11 +183,10 @@ impl Branches {
 
     /// values ← the choice at t that is nearest to the last known point up to t. Returns true if it is far from that.
     fn choose(&self, t: f64, values: &mut [f64]) -> bool {
-        let up_to = self.times.partition_point(|known| !self.is_after(*known, t));
-        if self.times.is_empty() {
+        let last = self.known.range(..=self.moment(t)).next_back();
+        let Some((_, before)) = last.or_else(|| self.known.first_key_value()) else {
             return true;
-        }
-        let before = &self.known[up_to.saturating_sub(1) * values.len()..][..values.len()];
+        };
         let (mut first, mut is_far) = (0, false);
         for (branch, places) in &self.columns {
             let place = first..first + places.len();
@@ -180,6 +195,10 @@ impl Branches {
             first += places.len();
         }
         is_far
+    }
+
+    fn moment(&self, t: f64) -> Moment {
+        Moment::of(if self.is_forward { t } else { -t })
     }
 
     /// numbers ← the row at t with the choices that go on from the points before it.
@@ -196,7 +215,7 @@ impl Branches {
             if !self.front.is_nan() && !self.end.is_empty() {
                 let mut start = core::mem::take(&mut self.end);
                 self.choose(self.front, &mut start);
-                (self.times, self.known) = (vec![self.front], start);
+                self.known = BTreeMap::from([(self.moment(self.front), start.into())]);
             }
             self.front = t;
             // A point without values is skipped.
@@ -208,11 +227,12 @@ impl Branches {
         for (place, value) in places().zip(&values) {
             numbers[place] = *value;
         }
-        if is_far && has_values && !self.times.is_empty() && t != self.front {
-            let at = self.times.partition_point(|known| !self.is_after(*known, t));
-            self.times.insert(at, t);
-            let first = at * values.len();
-            self.known.splice(first..first, values.iter().copied());
+        if is_far && has_values && !self.known.is_empty() && t != self.front {
+            // Rows come in the order of time: the first points are not needed again.
+            if self.known.len() >= KNOWN_MOST {
+                self.known.pop_first();
+            }
+            self.known.insert(self.moment(t), values.clone().into());
         }
         self.values = values;
     }
@@ -221,7 +241,7 @@ impl Branches {
     pub(crate) fn cut(&mut self, t: f64, numbers: &[f64]) {
         let places = self.columns.iter().flat_map(|(_, places)| places.clone());
         self.end = places.map(|place| numbers[place]).collect();
-        (self.times, self.known) = (vec![t], self.end.clone());
+        self.known = BTreeMap::from([(self.moment(t), self.end.clone().into())]);
         self.front = t;
     }
 
@@ -229,9 +249,14 @@ impl Branches {
     pub(crate) fn append_to(&self, driver: &[u8]) -> Vec<u8> {
         let mut bytes = driver.to_vec();
         if !self.is_empty() {
-            let counts = [self.front, self.end.len() as f64, self.times.len() as f64];
-            let numbers = self.times.iter().chain(&self.known).chain(&self.end).chain(&counts);
-            numbers.for_each(|x| bytes.extend(x.to_le_bytes()));
+            let mut write = |x: f64| bytes.extend(x.to_le_bytes());
+            for (moment, values) in &self.known {
+                values.iter().copied().chain([moment.time()]).for_each(&mut write);
+            }
+            self.end.iter().copied().for_each(&mut write);
+            [self.front, self.end.len() as f64, self.known.len() as f64]
+                .into_iter()
+                .for_each(write);
         }
         bytes
     }
@@ -252,12 +277,17 @@ impl Branches {
         };
         let mut taken = || {
             let [front, end, points] = last(3)?[..] else { return None };
-            let (end, points) = (last(end as usize)?, points as usize);
-            let known = last(points.checked_mul(count)?)?;
-            Some((front, end, known, last(points)?))
+            let end = last(end as usize)?;
+            let mut known = BTreeMap::new();
+            for _ in 0..points as usize {
+                let mut values = last(count + 1)?;
+                let moment = Moment::of(values.pop()?);
+                known.insert(moment, values.into());
+            }
+            Some((front, end, known))
         };
-        if let Some((front, end, known, times)) = taken() {
-            (self.front, self.end, self.known, self.times) = (front, end, known, times);
+        if let Some((front, end, known)) = taken() {
+            (self.front, self.end, self.known) = (front, end, known);
         }
         bytes
     }
@@ -314,6 +344,13 @@ mod tests {
         close(follow(true, true, before, [-2.6, 0.1, -2.3]), [-2.6, 0.1, TAU - 2.3]);
         close(follow(false, true, [3.0, 1.5, -3.0], [-3.0, 1.4, 3.0]), [TAU - 3.0, 1.4, 3.0 - TAU]);
         close(follow(true, true, [f64::NAN; 3], [3.0, 0.1, 0.7]), [3.0, 0.1, 0.7]);
+    }
+
+    #[test]
+    fn moments_have_the_order_of_times() {
+        let times = [f64::NEG_INFINITY, -3.5, -1e-300, 0.0, 5e-324, 2.0, 1e300, f64::INFINITY];
+        assert!(times.map(Moment::of).is_sorted());
+        assert_eq!(times.map(|t| Moment::of(t).time()), times);
     }
 
     #[test]
