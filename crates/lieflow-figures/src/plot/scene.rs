@@ -142,6 +142,8 @@ const NEAR: f64 = 0.1;
 /// The cosine of the largest turn of a smooth path from one chord to the next. A chord is not drawn if the path turns more
 /// at both of its ends: the points are too few to show the path.
 const TURN: f64 = 0.5;
+/// A path of fewer chords is not drawn as a line: a motion may turn many times between so few rows.
+const FEW: usize = 8;
 
 /// Paths that are nearer to each other are one curve to the eye: two pixels.
 const SAME_CURVE: f64 = 0.01;
@@ -187,7 +189,7 @@ fn unit_path(sphere: &Sphere, points: &[Vec3]) -> Vec<Vec<Vec3>> {
         let after = chords.get(i + 1).map(|after| goes_on(&chords[i], after));
         let [a, b] = [&finite[i], &finite[i + 1]];
         match chords.len() {
-            1 => is_within(a, b, FAR),
+            ..FEW => false,
             _ if is_within(a, b, NEAR) => before == Some(true) || after == Some(true),
             _ => is_within(a, b, FAR) && before != Some(false) && after != Some(false),
         }
@@ -243,9 +245,12 @@ mod tests {
             let points: Vec<Vec3> = angles.iter().map(|angle| at(*angle)).collect();
             unit_path(&sphere, &points).iter().map(Vec::len).collect()
         };
-        assert_eq!(path(&[0.0, 0.2, 0.4]), [3]);
-        assert_eq!(path(&[0.0, 0.2]), [2]);
-        assert_eq!(path(&[0.0, 0.3, 0.5, 0.7, 1.0]), [2, 3, 2]);
+        let steps = |first: f64, count: usize| (0..count).map(move |i| first + 0.2 * i as f64);
+        assert_eq!(path(&steps(0.0, 12).collect::<Vec<_>>()), [12]);
+        assert_eq!(path(&steps(0.0, 5).chain(steps(1.1, 6)).collect::<Vec<_>>()), [5, 6]);
+        // So few tell nothing of the way between them.
+        assert_eq!(path(&[0.0, 0.2, 0.4]), [2, 2, 2]);
+        assert_eq!(path(&[0.0, 0.2]), [2, 2]);
         assert_eq!(path(&[]), [0; 0]);
         // A small circle about a pole, passed in steps of 2.5 radians.
         let about_pole = |radius: f64, step: f64| -> Vec<usize> {
