@@ -42,7 +42,8 @@ pub fn order_of<const S: usize>(max: usize, a: &[[f64; S]; S], b: &[f64; S]) -> 
 impl<const S: usize> Tableau<S> {
     /// Checks that the tableau is explicit, that c_i = Σ_j a_ij and Σ_j b_j = 1, and that it has the order that it states.
     ///
-    /// A debug build checks every tableau before a run. A release build leaves the order out.
+    /// A build of lieflow with `debug-assertions` checks every tableau before a run. Another build leaves the order out:
+    /// a release, or a profile that switches `debug-assertions` off for dependencies.
     ///
     /// ```
     /// use lieflow::methods::tableau::{RK4, Tableau};
