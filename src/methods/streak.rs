@@ -1,8 +1,9 @@
-//! Streaks: steps by error that are taken in one call, while their size is kept.
+//! Streaks: steps by error that are taken in one call.
 //!
 //! Where a step size is kept, the end of a step, its error and the next step are one loop of typed code. The processor
-//! begins the next step there before it knows the error of the last one. The caller, which knows numbers only, decides on
-//! the last attempt of a streak. The steps of a run do not depend on where its streaks end.
+//! begins the next step there before it knows the error of the last one. Where it is not kept, the caller, which knows
+//! numbers only, tells the next size ([`Resize`]). The caller decides on the last attempt of a streak. The steps of a run
+//! do not depend on where its streaks end.
 
 use super::{Embedded, Step};
 use crate::actions::Action;
@@ -12,24 +13,52 @@ use crate::scalar::Real;
 use crate::space::Metric;
 use crate::tolerance::Tolerance;
 
-/// The conditions under which the next step of the same size is attempted, too.
+/// The next step after an accepted one, where its size is not kept.
+pub trait Resize {
+    /// The size of the step after one that ended at `end` with this ratio of error and tolerance; none ends the streak.
+    /// `kept` is the ratio of the step before, if that step kept its size.
+    fn after(&self, step: Step<f64>, end: f64, kept: Option<f64>, ratio: f64) -> Option<Resized>;
+    /// Called when the step was accepted, and the next one has the size that was told last.
+    fn accept(&self);
+}
+
+/// A step size.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Streak {
+pub struct Resized {
+    /// The size; negative when time runs backward.
+    pub size: f64,
+    /// True if it is kept where the next ratio says so.
+    pub may_be_kept: bool,
+}
+
+/// The conditions under which the next step is attempted, too.
+#[derive(Clone, Copy)]
+#[allow(missing_debug_implementations)] // the sizes are the caller's
+pub struct Streak<'a> {
     /// The largest number of attempts.
     pub most: u64,
-    /// The size of each step; negative when time runs backward.
-    pub size: f64,
+    /// The size of the first step.
+    pub first: Resized,
     /// The least and the largest ratio of error and tolerance at which the size is kept.
     pub kept: [f64; 2],
-    /// The streak ends when this time is closer than two sizes.
+    /// A size is kept if this time is at least two sizes away.
     pub stop: f64,
     /// The streak ends with a step that reaches this time.
     pub time: Option<f64>,
+    /// Tells the size where it is not kept.
+    pub resize: Option<&'a dyn Resize>,
 }
 
-impl Streak {
+impl Streak<'_> {
     /// One attempt.
-    pub const ONE: Streak = Streak { most: 1, size: 0.0, kept: [0.0; 2], stop: 0.0, time: None };
+    pub const ONE: Self = Streak {
+        most: 1,
+        first: Resized { size: 0.0, may_be_kept: false },
+        kept: [0.0; 2],
+        stop: 0.0,
+        time: None,
+        resize: None,
+    };
 
     /// True if the step size is kept after this ratio.
     #[inline(always)]
@@ -37,15 +66,17 @@ impl Streak {
         self.kept[0] <= ratio && ratio <= self.kept[1]
     }
 
-    /// The end of the next step, after one that reached t, if the streak continues there.
+    /// True if a step that ends at t may be followed by another attempt, after so many.
     #[inline(always)]
-    fn next(&self, t: f64) -> Option<f64> {
-        let Streak { size, stop, time, .. } = *self;
+    fn continues(&self, attempts: u64, t: f64, size: f64) -> bool {
         let is_before = |a: f64, b: f64| if size > 0.0 { a < b } else { a > b };
-        let continues = (stop - t).abs() >= 2.0 * size.abs()
-            && time.is_none_or(|time| is_before(t, time))
-            && t + size != t;
-        continues.then_some(t + size)
+        attempts < self.most && self.time.is_none_or(|time| is_before(t, time))
+    }
+
+    /// True if a step of this size from t keeps it.
+    #[inline(always)]
+    fn has_room(&self, t: f64, size: f64) -> bool {
+        (self.stop - t).abs() >= 2.0 * size.abs() && t + size != t
     }
 }
 
@@ -54,12 +85,14 @@ impl Streak {
 pub struct Attempts {
     /// The number of accepted steps.
     pub accepted: u64,
-    /// The ratio of the last accepted step.
-    pub accepted_ratio: f64,
+    /// The ratio of the last accepted step, if it kept its size.
+    pub kept: Option<f64>,
     /// The last attempt.
     pub step: Step<f64>,
     /// Its end.
     pub end: f64,
+    /// The size that was chosen for it: that of the step but for rounding, if a step was accepted.
+    pub size: f64,
     /// Its error in units of the tolerance.
     ///
     /// # Errors
@@ -80,7 +113,7 @@ pub struct Attempt<'a, P: Problem> {
     /// Its end.
     pub end: f64,
     /// The conditions of the steps after it.
-    pub streak: &'a Streak,
+    pub streak: &'a Streak<'a>,
     /// The start of the last accepted step, the start of the attempt, and its end.
     pub points: [&'a mut PointOf<P>; 3],
     /// Looks at each accepted step.
@@ -109,13 +142,15 @@ where
     let Attempt { tolerance, mut step, mut end, streak, points: [from, y, to], mut watch } =
         attempt;
     let (action, group) = (problem.action(), problem.group());
-    let (mut accepted, mut accepted_ratio) = (0, 0.0);
-    // Points of a few numbers stay in registers from step to step.
+    let (mut accepted, mut kept, mut now) = (0, None, streak.first);
+    // Points of a few numbers stay in registers from step to step. They are not in an array: numbers that are moved within
+    // one may be loaded in pairs of which one half was just stored, and wait for it.
     let is_small = PointOf::<P>::IS_SMALL;
-    let mut copies = if is_small { Some([from.clone(), y.clone(), to.clone()]) } else { None };
-    let [a, b, c] = match &mut copies {
-        Some(copies) => copies.each_mut(),
-        None => [&mut *from, &mut *y, &mut *to],
+    let copy = |y: &PointOf<P>| is_small.then(|| y.clone());
+    let (mut from_copy, mut y_copy, mut to_copy) = (copy(from), copy(y), copy(to));
+    let [a, b, c] = match (&mut from_copy, &mut y_copy, &mut to_copy) {
+        (Some(a), Some(b), Some(c)) => [a, b, c],
+        _ => [&mut *from, &mut *y, &mut *to],
     };
     let attempts = loop {
         let Step { n, t, h } = step;
@@ -130,20 +165,45 @@ where
                 (true, false) => Err(not_finite("the error estimate")),
             }
         });
+        // The size of the next step, and the ratio of this one if it keeps its size.
         let next = match ratio {
-            Ok(ratio) if streak.keeps(ratio) && accepted + 1 < streak.most => streak.next(end),
+            Ok(ratio) if streak.continues(accepted + 1, end, now.size) => {
+                if now.may_be_kept && streak.keeps(ratio) {
+                    streak.has_room(end, now.size).then_some((now, Some(ratio)))
+                } else {
+                    let resize = streak.resize.filter(|_| ratio <= 1.0);
+                    resize.and_then(|sizes| Some((sizes.after(step, end, kept, ratio)?, None)))
+                }
+            }
             _ => None,
         };
-        let next = next.filter(|_| watch.as_mut().is_none_or(|watch| watch([t, end], c)));
-        let (Some(next), Ok(kept)) = (next, &ratio) else {
-            break Attempts { accepted, accepted_ratio, step, end, ratio };
+        let next = next.filter(|_| match &mut watch {
+            None => true,
+            Some(watch) if is_small => watch([t, end], &c.clone()),
+            Some(watch) => watch([t, end], c),
+        });
+        let Some(next) = next else {
+            break Attempts { accepted, kept, step, end, size: now.size, ratio };
         };
-        core::mem::swap(a, b);
-        core::mem::swap(b, c);
-        (accepted, accepted_ratio) = (accepted + 1, *kept);
+        if let (Some(sizes), None) = (streak.resize, next.1) {
+            sizes.accept();
+        }
+        match is_small {
+            true => {
+                a.assign(b);
+                b.assign(c);
+            }
+            false => {
+                core::mem::swap(a, b);
+                core::mem::swap(b, c);
+            }
+        }
+        accepted += 1;
+        (now, kept) = next;
+        let next = end + now.size;
         (step, end) = (Step { n: n + 1, t: end, h: next - end }, next);
     };
-    if let Some([a, b, c]) = &copies {
+    if let (Some(a), Some(b), Some(c)) = (&from_copy, &y_copy, &to_copy) {
         from.assign(a);
         y.assign(b);
         to.assign(c);

@@ -1,21 +1,74 @@
 //! Adaptive step size: accepted steps, and the choice of the first step.
 
-use super::control::StepControl;
+use core::cell::Cell;
+
+use super::control::{Controller, StepControl};
 use super::points::AnyPoints;
 use super::stats::{RunError, Stats};
 use super::streak::{Reach, Run};
 use super::timeline::{Chooser, Pacer, Timeline, size_to};
 use crate::error::StepError;
-use crate::methods::{Attempts, Step, Streak};
+use crate::methods::{Attempts, Resize, Resized, Step, Streak};
 
 /// The number of rejections in a row that ends a run.
 const REJECTIONS_MAX: u32 = 60;
 /// An exact step with events, or without an end, turns by so many radian.
 const EXACT_TURN: f64 = 1.0;
 
+/// The size, the wall and the controller of a [`Chooser`].
+type Choice = (Option<f64>, Option<f64>, Controller);
+
+/// The choice of a step size within a streak. It stops where the step may not have the size that its error allows.
+struct Sizes {
+    controller: Cell<Controller>,
+    /// The controller after the step whose next size was told last.
+    told: Cell<Controller>,
+    /// The least and the largest size of a step that was not kept.
+    found: Cell<[f64; 2]>,
+    stop: f64,
+    /// The least and the largest size.
+    limits: [f64; 2],
+}
+
+impl Sizes {
+    fn new(Chooser { controller, control, .. }: &Chooser, stop: f64) -> Self {
+        Sizes {
+            controller: Cell::new(*controller),
+            told: Cell::new(*controller),
+            found: Cell::new([f64::INFINITY, 0.0]),
+            stop,
+            limits: [control.min_step, control.max_step],
+        }
+    }
+}
+
+impl Resize for Sizes {
+    fn after(&self, step: Step<f64>, end: f64, kept: Option<f64>, ratio: f64) -> Option<Resized> {
+        let mut controller = self.controller.get();
+        if let Some(kept) = kept {
+            controller.accept(kept);
+        }
+        let size = (end - step.t).abs();
+        let [least, largest] = self.limits;
+        let next = (size * controller.accept(ratio)).max(least);
+        let is_free = next <= largest && (self.stop - end).abs() >= 2.0 * next;
+        let size = next.copysign(self.stop - end);
+        if !is_free || end + size == end {
+            return None;
+        }
+        let [least, largest] = self.found.get();
+        self.found.set([least.min(step.h.abs()), largest.max(step.h.abs())]);
+        self.told.set(controller);
+        Some(Resized { size, may_be_kept: controller.keeps() })
+    }
+    fn accept(&self) {
+        self.controller.set(self.told.get());
+    }
+}
+
 impl Timeline {
-    /// Takes accepted steps: one, or those of a streak. After an error the choice of the step size is as before, so that a
-    /// caller who has mended f goes on with the same attempt.
+    /// Takes accepted steps: one, or those of a streak. After an error the choice of the step size is as before the attempt
+    /// that failed, so that a caller who has mended f goes on with the same attempt.
     pub(super) fn chosen_steps(
         &mut self,
         run: &mut dyn Run,
@@ -23,9 +76,10 @@ impl Timeline {
         reach: Reach,
     ) -> Result<(), RunError> {
         let Pacer::ByError(Chooser { h, wall, controller, .. }) = self.pacer else { return Ok(()) };
-        let done = self.attempt_steps(run, stop, reach);
+        let mut before = (h, wall, controller);
+        let done = self.attempt_steps(run, stop, reach, &mut before);
         if let (Err(_), Pacer::ByError(chooser)) = (&done, &mut self.pacer) {
-            (chooser.h, chooser.wall, chooser.controller) = (h, wall, controller);
+            (chooser.h, chooser.wall, chooser.controller) = before;
         }
         done
     }
@@ -35,6 +89,7 @@ impl Timeline {
         run: &mut dyn Run,
         (stop, jumps): (f64, bool),
         reach: Reach,
+        before: &mut Choice,
     ) -> Result<(), RunError> {
         let Pacer::ByError(chooser) = &self.pacer else { return Ok(()) };
         let StepControl { min_step, max_steps, first_step, .. } = chooser.control;
@@ -55,14 +110,18 @@ impl Timeline {
             }
             let h_to_end = size_to(self.t, end, jumps && end == stop);
             let step = Step { n: self.stats.accepted, t: self.t, h: h_to_end };
-            let streak = self.streak((h, end), stop, reach);
+            let Pacer::ByError(chooser) = &self.pacer else { return Ok(()) };
+            let sizes = Sizes::new(chooser, stop);
+            let streak = self.streak(chooser, (h, end), reach, &sizes);
             let tried = run.attempt(step, end, &streak);
             self.attempted(tried.accepted + 1);
+            let mut size = size;
             if tried.accepted > 0 {
-                self.went_on(step, &tried);
+                h = tried.size.abs();
+                *before = self.went_on(h, &tried, &sizes);
+                size = (tried.end - self.t).abs();
             }
             let Attempts { step, end, ratio, .. } = tried;
-            let size = if tried.accepted > 0 { (end - self.t).abs() } else { size };
             match ratio {
                 Ok(ratio) if ratio <= 1.0 => {
                     let forward = self.t1 > self.t;
@@ -126,30 +185,45 @@ impl Timeline {
     }
 
     /// The streak that an attempt of size h, which ends at `end`, may begin.
-    fn streak(&self, (h, end): (f64, f64), stop: f64, Reach { steps, time }: Reach) -> Streak {
-        let Pacer::ByError(Chooser { controller, control, wall, .. }) = &self.pacer else {
-            return Streak::ONE;
-        };
-        let Stats { accepted, rejected, .. } = self.stats;
+    fn streak<'a>(
+        &self,
+        Chooser { controller, control, wall, .. }: &Chooser,
+        (h, end): (f64, f64),
+        Reach { steps, time }: Reach,
+        sizes: &'a Sizes,
+    ) -> Streak<'a> {
+        let stop = sizes.stop;
         let size = h.copysign(stop - self.t);
         let is_free = (stop - self.t).abs() >= 2.0 * h && end == self.t + size;
-        if !is_free || !controller.keeps() || wall.is_some() {
+        if !is_free || controller.hold || controller.is_exact() || wall.is_some() {
             return Streak::ONE;
         }
+        let Stats { accepted, rejected, .. } = self.stats;
         let most = steps.min(self.cadence.next).saturating_sub(accepted);
         let most = most.min(control.max_steps - accepted - rejected).max(1);
-        Streak { most, size, kept: controller.kept, stop, time }
+        let first = Resized { size, may_be_kept: controller.keeps() };
+        Streak { most, first, kept: controller.kept, stop, time, resize: Some(sizes) }
     }
 
-    /// Records the accepted steps of a streak that began with `first`, but for the last attempt.
-    fn went_on(&mut self, first: Step<f64>, tried: &Attempts) {
+    /// Records the accepted steps of a streak, but for the last attempt, whose size is h. Returns the choice of the step
+    /// size before that attempt.
+    fn went_on(&mut self, h: f64, tried: &Attempts, sizes: &Sizes) -> Choice {
         self.t = tried.step.t;
         let Stats { accepted, smallest_step, largest_step, .. } = &mut self.stats;
         *accepted += tried.accepted;
-        *smallest_step = smallest_step.min(first.h.abs());
-        *largest_step = largest_step.max(first.h.abs());
-        let Pacer::ByError(chooser) = &mut self.pacer else { return };
-        chooser.controller.accept(tried.accepted_ratio);
+        let [mut least, mut largest] = sizes.found.get();
+        let mut controller = sizes.controller.get();
+        if let Some(kept) = tried.kept {
+            let size = tried.step.h.abs();
+            (least, largest) = (least.min(size), largest.max(size));
+            controller.accept(kept);
+        }
+        *smallest_step = smallest_step.min(least);
+        *largest_step = largest_step.max(largest);
+        if let Pacer::ByError(chooser) = &mut self.pacer {
+            chooser.controller = controller;
+        }
+        (Some(h), None, controller)
     }
 
     /// A step of a method that is exact at any size.

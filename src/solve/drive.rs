@@ -58,7 +58,7 @@ impl Run for Watched<'_> {
     fn points(&mut self) -> &mut dyn AnyPoints {
         self.output.points()
     }
-    fn attempt(&mut self, step: Step<f64>, end: f64, streak: &Streak) -> Attempts {
+    fn attempt(&mut self, step: Step<f64>, end: f64, streak: &Streak<'_>) -> Attempts {
         self.output.attempt(step, end, streak, self.events)
     }
 }

@@ -104,6 +104,8 @@ pub(super) struct EventRule {
     pub(super) seen: Seen,
     /// The number of zeros found so far.
     pub(super) count: u64,
+    /// g at the end of a step that may be passed.
+    next: f64,
 }
 
 impl<Y> fmt::Debug for Event<'_, Y> {
@@ -155,6 +157,7 @@ impl<'a, Y> Event<'a, Y> {
             has_long_steps: false,
             seen: Seen::default(),
             count: 0,
+            next: 0.0,
         };
         Event { rule, functions: EventFunctions { g: Box::new(g), change: None, told: None } }
     }
@@ -251,8 +254,6 @@ pub(super) struct Events {
     pub(super) all: Vec<EventRule>,
     /// The zeros of the last step, in the order of time.
     pub(super) found: Vec<Zero>,
-    /// The values of g at the end of a step.
-    values: Vec<f64>,
 }
 
 impl Events {
@@ -260,8 +261,7 @@ impl Events {
     pub(super) fn new(mut all: Vec<EventRule>, order: usize) -> Self {
         all.iter_mut().for_each(|event| event.has_long_steps = order >= LONG_STEPS);
         let found = Vec::with_capacity(2 * all.len() * (POINTS as usize + 2));
-        let values = Vec::with_capacity(all.len());
-        Events { all, found, values }
+        Events { all, found }
     }
 
     /// True if each step needs a search, whatever the values at its end.
@@ -273,20 +273,18 @@ impl Events {
         self.all.iter().any(always)
     }
 
-    /// Passes a step of a streak, which is not the first step of a run, if no event can have a zero in it. `value` gives g
+    /// Passes a step of a streak, which is not the first step of a run, if no event can have a zero in it. `values` are g
     /// at the end of the step. Returns false if the step needs a search; then nothing is passed.
-    #[inline]
-    pub(super) fn pass(&mut self, span: [f64; 2], mut value: impl FnMut(usize) -> f64) -> bool {
-        self.values.clear();
-        for (index, event) in self.all.iter().enumerate() {
-            let last = value(index);
+    #[inline(always)]
+    pub(super) fn pass(&mut self, span: [f64; 2], values: impl Iterator<Item = f64>) -> bool {
+        for (event, last) in self.all.iter_mut().zip(values) {
             if !(last.is_finite() && event.search(span, last, false).is_idle()) {
                 return false;
             }
-            self.values.push(last);
+            event.next = last;
         }
-        for (event, &last) in self.all.iter_mut().zip(&self.values) {
-            event.seen = event.search(span, last, false).seen_at_end();
+        for event in &mut self.all {
+            event.seen = event.search(span, event.next, false).seen_at_end();
         }
         true
     }
@@ -385,10 +383,11 @@ impl Search {
             (Some(points), _) => points,
             (None, None) => POINTS,
             (None, Some([before, length])) => {
+                // Times the length of the step before: a division takes as long as the rest.
                 let size = (end - start).abs();
-                let bend = (last - seen.value - (seen.value - before) * (size / length)).abs();
-                let near = first.abs().min(last.abs());
-                if near <= 2.0 * bend { POINTS } else { 0 }
+                let bend = (last - seen.value) * length - (seen.value - before) * size;
+                let near = if first.abs() < last.abs() { first.abs() } else { last.abs() };
+                if near * length <= 2.0 * bend.abs() { POINTS } else { 0 }
             }
         }
     }

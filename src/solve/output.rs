@@ -28,7 +28,7 @@ pub(super) trait AnyOutput {
         &mut self,
         step: Step<f64>,
         end: f64,
-        streak: &Streak,
+        streak: &Streak<'_>,
         events: &mut Events,
     ) -> Attempts;
     /// The value of the event with this number at a point, or at y.
@@ -153,7 +153,7 @@ impl<P: Problem, M: Method<P>> AnyOutput for Output<'_, '_, P, M> {
         &mut self,
         step: Step<f64>,
         end: f64,
-        streak: &Streak,
+        streak: &Streak<'_>,
         events: &mut Events,
     ) -> Attempts {
         let Output { points, events: functions, .. } = self;
@@ -164,7 +164,7 @@ impl<P: Problem, M: Method<P>> AnyOutput for Output<'_, '_, P, M> {
             return points.attempt_watched(step, end, &Streak::ONE, None);
         }
         let watch = &mut |span: [f64; 2], y: &PointOf<P>| {
-            events.pass(span, |event| (functions[event].g)(span[1], y))
+            events.pass(span, functions.iter_mut().map(|event| (event.g)(span[1], y)))
         };
         points.attempt_watched(step, end, streak, Some(watch))
     }

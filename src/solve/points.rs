@@ -54,7 +54,7 @@ pub(super) trait AnyPoints {
     /// from ← y, y ← the end of these steps. On an error y is the start of the step that failed.
     fn steps(&mut self, steps: EqualSteps) -> Result<(), (u64, StepError)>;
     /// to ← the end of an adaptive step from y, which ends at `end`, after the steps of the streak.
-    fn attempt(&mut self, step: Step<f64>, end: f64, streak: &Streak) -> Attempts;
+    fn attempt(&mut self, step: Step<f64>, end: f64, streak: &Streak<'_>) -> Attempts;
     /// from ← y, y ← to.
     fn accept(&mut self);
     /// ‖f(t, y)‖. Stores f.
@@ -338,7 +338,7 @@ impl<'a, P: Problem, M: Method<P>> Points<'a, P, M> {
         &'w mut self,
         step: Step<f64>,
         end: f64,
-        streak: &'w Streak,
+        streak: &'w Streak<'w>,
         watch: Option<&'w mut Watch<'w, PointOf<P>>>,
     ) -> Attempts {
         let Points { problem, method, y, from, to, work, rates, .. } = self;
@@ -350,7 +350,7 @@ impl<'a, P: Problem, M: Method<P>> Points<'a, P, M> {
             }
             None => {
                 let ratio = Err(StepError::NotFinite { what: "the error estimate" });
-                Attempts { accepted: 0, accepted_ratio: 0.0, step, end, ratio }
+                Attempts { accepted: 0, kept: None, step, end, size: step.h, ratio }
             }
         }
     }
@@ -385,7 +385,7 @@ impl<P: Problem, M: Method<P>> AnyPoints for Points<'_, P, M> {
             let _ = method.steps(problem, EqualSteps { end: *failed, ..steps }, y, work);
         })
     }
-    fn attempt(&mut self, step: Step<f64>, end: f64, streak: &Streak) -> Attempts {
+    fn attempt(&mut self, step: Step<f64>, end: f64, streak: &Streak<'_>) -> Attempts {
         self.attempt_watched(step, end, streak, None)
     }
     fn accept(&mut self) {

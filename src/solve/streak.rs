@@ -23,7 +23,7 @@ pub(super) trait Run {
     fn points(&mut self) -> &mut dyn AnyPoints;
     /// Attempts a step that ends at `end`, and those of the streak after it. A step in which an event may have a zero is
     /// the last attempt.
-    fn attempt(&mut self, step: Step<f64>, end: f64, streak: &Streak) -> Attempts;
+    fn attempt(&mut self, step: Step<f64>, end: f64, streak: &Streak<'_>) -> Attempts;
 }
 
 /// The points of a run without events.
@@ -33,7 +33,7 @@ impl Run for Alone<'_> {
     fn points(&mut self) -> &mut dyn AnyPoints {
         &mut *self.0
     }
-    fn attempt(&mut self, step: Step<f64>, end: f64, streak: &Streak) -> Attempts {
+    fn attempt(&mut self, step: Step<f64>, end: f64, streak: &Streak<'_>) -> Attempts {
         self.0.attempt(step, end, streak)
     }
 }

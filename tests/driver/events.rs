@@ -229,7 +229,8 @@ fn a_run_is_cancelled() {
         let run = solve.run(START).expect("a run");
         assert_eq!(run.status, Status::Cancelled);
         // Within a thousand steps.
-        assert!(run.t >= 3.0 - 1.0 && run.t < 4.1, "{}", run.t);
+        let most = 1100.0 * run.stats.largest_step;
+        assert!(run.t >= 3.0 - 1.0 && run.t < 3.0 + most, "{}: {:?}", run.t, run.stats);
         if every == 1 {
             assert_eq!(run.times.last(), Some(&run.t));
         }
