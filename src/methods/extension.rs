@@ -28,7 +28,7 @@ use crate::groups::LieAlgebra;
 use crate::maps::CoordinateMap;
 use crate::problems::{AlgOf, Ambient, FieldStore, PointOf, Problem, ScalarOf};
 use crate::scalar::Real;
-use crate::space::LinearSpace;
+use crate::space::{LinearSpace, Metric};
 
 /// The largest number of extra stages.
 pub(super) const EXTRA: usize = 4;
@@ -206,32 +206,37 @@ impl<'a, const S: usize> Extension<'a, S> {
         }
     }
 
-    /// Calls `field` for each extra stage, one after the other, with its number e, its node c and the weights of its u.
+    /// Calls `field` for each extra stage after the known ones, one after the other, with its number e, its node c and the
+    /// weights of its u.
     ///
     /// `field` reads the stages before e and writes stage e of one array. It does not get them as two references:
     /// docs/compiler-fault.md says why.
     fn stages(
         &self,
+        known: usize,
         mut field: impl FnMut(usize, f64, &Weights<S>) -> Result<(), StepError>,
     ) -> Result<(), StepError> {
-        for e in 0..self.evaluations() {
+        for e in known..self.evaluations() {
             let (c, weights) = self.sample(e);
             field(e, c, &weights)?;
         }
         Ok(())
     }
 
-    /// d ← the extra stages in a chart.
+    /// d ← the extra stages in a chart. The first one, at the end of the step, is the stage `end` if that is known.
     pub(super) fn prepare_in_chart<P: Problem, Psi: CoordinateMap<P::Group>>(
         &self,
         alg: &P::Group,
         chart: &mut Chart<'_, P, Psi>,
         Step { t, h, .. }: Step<ScalarOf<P>>,
-        k: &[AlgOf<P>; S],
+        (k, end): (&[AlgOf<P>; S], Option<usize>),
         d: &mut [AlgOf<P>; EXTRA],
         u: &mut AlgOf<P>,
     ) -> Result<(), StepError> {
-        self.stages(|e, c, weights| {
+        if let Some(end) = end {
+            alg.combine(ScalarOf::<P>::lit(1.0), &[1.0], &k[end..=end], &mut d[0]);
+        }
+        self.stages(usize::from(end.is_some()), |e, c, weights| {
             weights.in_algebra(alg, h, k, &d[..e], u);
             chart.pullback(t + h * ScalarOf::<P>::lit(c), u, &mut d[e])?;
             finite(alg.is_finite(&d[e]))
@@ -266,18 +271,22 @@ impl<'a, const S: usize> Extension<'a, S> {
         self.weights(theta).in_algebra(alg, h, k, d, u);
     }
 
-    /// d ← the extra stages in the linear space around M.
+    /// d ← the extra stages in the linear space around M. The first one, at the end of the step, is the stage `end` if
+    /// that is known.
     pub(super) fn prepare_in_space<P: Ambient>(
         &self,
         problem: &P,
         Step { t, h, .. }: Step<ScalarOf<P>>,
         y: &PointOf<P>,
-        k: &[PointOf<P>; S],
+        (k, end): (&[PointOf<P>; S], Option<usize>),
         d: &mut [PointOf<P>; EXTRA],
         z: &mut PointOf<P>,
         store: &mut FieldStore<P>,
     ) -> Result<(), StepError> {
-        self.stages(|e, c, weights| {
+        if let Some(end) = end {
+            d[0].assign(&k[end]);
+        }
+        self.stages(usize::from(end.is_some()), |e, c, weights| {
             weights.in_space(y, h, k, &d[..e], z);
             problem.field(t + h * ScalarOf::<P>::lit(c), z, &mut d[e], store);
             finite(d[e].is_finite())
@@ -343,7 +352,7 @@ impl<P: Problem> OneIncrement<P> {
         step: Step<ScalarOf<P>>,
     ) -> Result<(), StepError> {
         let OneIncrement { k, d, u } = self;
-        extension.prepare_in_chart(alg, chart, step, k, d, u)
+        extension.prepare_in_chart(alg, chart, step, (k, None), d, u)
     }
 
     /// u ← u(θ).

@@ -204,7 +204,7 @@ impl<P: Ambient, const S: usize> Method<P> for Gauss<S> {
             ends[0].add(ScalarOf::<P>::lit(b), k);
         }
         problem.field(step.t, from, &mut ends[1], field);
-        self.extension().prepare_in_space(problem, step, from, ends, extra, z, field)
+        self.extension().prepare_in_space(problem, step, from, (ends, None), extra, z, field)
     }
     fn within(&self, _: &Self::Work) -> Within {
         Within::Space

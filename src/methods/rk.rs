@@ -131,10 +131,14 @@ impl<P: Ambient, const S: usize> Method<P> for Rk<S> {
         problem: &P,
         step: Step<ScalarOf<P>>,
         from: &PointOf<P>,
-        _: &PointOf<P>,
-        RkWork { k, z, extra, field, .. }: &mut Self::Work,
+        end: &PointOf<P>,
+        RkWork { k, z, extra, field, known }: &mut Self::Work,
     ) -> Result<(), StepError> {
-        Extension::of(&self.0).prepare_in_space(problem, step, from, k, extra, z, field)
+        let extension = Extension::of(&self.0);
+        let is_known = extension.evaluations() > 0 && known.has(step.t + step.h, end);
+        known.used += u64::from(is_known);
+        let end = is_known.then(|| self.0.all_stages() - 1);
+        extension.prepare_in_space(problem, step, from, (k, end), extra, z, field)
     }
     fn within(&self, _: &Self::Work) -> Within {
         Within::Space
@@ -185,13 +189,11 @@ impl<P: Ambient, const S: usize> Embedded<P> for Rk<S> {
                 }
             }
         };
-        let error = match &self.0.error {
-            Some(estimate) => estimate.error(size),
-            None => ScalarOf::<P>::lit(f64::INFINITY),
-        };
-        if !error.is_finite() && self.0.error.is_some() {
-            return Err(StepError::NotFinite { what: "the error estimate" });
+        let Some(estimate) = &self.0.error else { return Ok(ScalarOf::<P>::lit(f64::INFINITY)) };
+        let error = estimate.error(size);
+        match error.is_finite() {
+            true => Ok(error),
+            false => Err(StepError::NotFinite { what: "the error estimate" }),
         }
-        Ok(error)
     }
 }

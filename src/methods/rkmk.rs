@@ -29,13 +29,19 @@ pub struct Rkmk<Psi, const S: usize> {
     tableau: Tableau<S>,
     /// The number of stages of the update.
     stages: usize,
+    /// The stage at the end of the step, of a pair that has one.
+    end: Option<usize>,
     psi: Psi,
 }
 
 impl<Psi, const S: usize> Rkmk<Psi, S> {
     /// Makes the method.
     pub const fn new(tableau: Tableau<S>, psi: Psi) -> Self {
-        Rkmk { tableau, stages: tableau.update_stages(), psi }
+        let end = match tableau.ends_with_first_stage() {
+            true => Some(tableau.all_stages() - 1),
+            false => None,
+        };
+        Rkmk { tableau, stages: tableau.update_stages(), end, psi }
     }
 }
 
@@ -45,6 +51,10 @@ pub struct RkmkWork<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> {
     stages: Stages<P, Psi, S>,
     y: PointOf<P>,
     extra: [AlgOf<P>; EXTRA],
+    /// The stage at the end of the last step, if that step took it.
+    end: Option<usize>,
+    /// How often that stage served dense output.
+    reused: u64,
 }
 
 impl<Psi, const S: usize> Rkmk<Psi, S> {
@@ -102,6 +112,8 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> Method<P> for Rkm
             stages: Stages::new(problem, &self.psi, like)?,
             y: like.clone(),
             extra: copies(problem.group().zero()),
+            end: None,
+            reused: 0,
         })
     }
     #[inline]
@@ -110,8 +122,9 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> Method<P> for Rkm
         problem: &P,
         step: Step<ScalarOf<P>>,
         p: &mut PointOf<P>,
-        RkmkWork { stages, y, .. }: &mut Self::Work,
+        RkmkWork { stages, y, end, .. }: &mut Self::Work,
     ) -> Result<(), StepError> {
+        *end = None;
         let done = self.advance(self.stages, problem, step, p, stages, y);
         stages.conclude(problem, done, p, y)
     }
@@ -121,11 +134,16 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> Method<P> for Rkm
         step: Step<ScalarOf<P>>,
         from: &PointOf<P>,
         _: &PointOf<P>,
-        RkmkWork { stages: Stages { k, u, chart }, extra, .. }: &mut Self::Work,
+        RkmkWork { stages: Stages { k, u, chart }, extra, end, reused, .. }: &mut Self::Work,
     ) -> Result<(), StepError> {
         let mut chart = chart.around(problem, &self.psi, step.n, from);
         let extension = Extension::of(&self.tableau);
-        extension.prepare_in_chart(problem.group(), &mut chart, step, k, extra, u)
+        let end = end.filter(|_| extension.evaluations() > 0);
+        *reused += u64::from(end.is_some());
+        extension.prepare_in_chart(problem.group(), &mut chart, step, (k, end), extra, u)
+    }
+    fn reused(&self, work: &Self::Work) -> u64 {
+        work.reused
     }
     fn within(&self, _: &Self::Work) -> Within {
         Within::Chart
@@ -174,11 +192,12 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> Embedded<P> for R
         step: Step<ScalarOf<P>>,
         tolerance: &Tolerance,
         from: &PointOf<P>,
-        RkmkWork { stages, .. }: &mut Self::Work,
+        RkmkWork { stages, end, .. }: &mut Self::Work,
         to: &mut PointOf<P>,
     ) -> Result<ScalarOf<P>, StepError> {
-        let alg = problem.group();
-        let done = self.advance(self.tableau.all_stages(), problem, step, from, stages, to);
+        let (alg, all) = (problem.group(), self.tableau.all_stages());
+        *end = self.end;
+        let done = self.advance(all, problem, step, from, stages, to);
         done.map_err(|error| stages.blame(problem, error))?;
         let Stages { k, u, .. } = stages;
         let length = alg.norm(u);

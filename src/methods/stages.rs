@@ -79,7 +79,8 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> Stages<P, Psi, S>
 
 /// The point and the time at which the value of f is known, because the last stage of a step was taken there.
 ///
-/// Another step begins there only if both are the same, to the last bit. So it depends on its arguments alone.
+/// Another step begins there only if both are the same, to the last bit. So it depends on its arguments alone. Dense output
+/// takes the value as its first extra stage.
 pub(super) struct Known<Y: Metric> {
     /// The time, if there is a known value.
     t: Option<Y::Scalar>,
@@ -95,10 +96,17 @@ impl<Y: Metric + Clone> Known<Y> {
         Known { t: None, y: like.clone(), is_offered, used: 0 }
     }
 
+    /// True if the value is known there.
+    #[inline(always)]
+    pub(super) fn has(&self, t: Y::Scalar, y: &Y) -> bool {
+        self.is_offered && self.t == Some(t) && self.y.is_same(y)
+    }
+
     /// True if the value is known there. Then it is used, and no longer known.
     #[inline(always)]
     pub(super) fn take(&mut self, t: Y::Scalar, y: &Y) -> bool {
-        let is_there = self.is_offered && self.t.take() == Some(t) && self.y.is_same(y);
+        let is_there = self.has(t, y);
+        self.t = None;
         self.used += u64::from(is_there);
         is_there
     }

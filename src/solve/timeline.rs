@@ -370,11 +370,16 @@ impl Timeline {
         if matches!(self.looked_at, Looked::Stale | Looked::Restored) {
             self.repeat(points)?;
         }
-        if self.looked_at != Looked::Restored {
-            self.stats.evaluations = plus(self.stats.evaluations, self.facts.dense_evaluations[0]);
-        }
+        let reused = points.reused();
         // A step that was cut is prepared, or was taken again.
-        points.prepare(self.last, self.looked_at == Looked::Fresh)?;
+        let prepared = points.prepare(self.last, self.looked_at == Looked::Fresh);
+        let evaluations = match self.looked_at {
+            // They are counted already, without those that were not needed.
+            Looked::Restored => Some(points.reused().wrapping_sub(reused)),
+            _ => self.facts.dense_evaluations[0],
+        };
+        self.stats.evaluations = plus(self.stats.evaluations, evaluations);
+        prepared?;
         self.looked_at = Looked::Prepared;
         Ok(())
     }

@@ -33,6 +33,41 @@ fn attitudes() -> (Rotations, Arc<AtomicU64>) {
 fn assert_moves<T: Send + 'static>(_: &T) {}
 fn assert_shared<T: Send + Sync + 'static>(_: &T) {}
 
+/// The last stage of DOPRI5 and BS3 is f at the end of the step. Dense output takes it from there.
+#[test]
+fn dense_output_evaluates_only_what_the_step_has_not() {
+    for (name, each) in [
+        ("rkmk dopri5 exp", 0),
+        ("rkmk bs3 cay", 0),
+        ("rk dopri5", 0),
+        ("rk bs3", 0),
+        ("rkmk verner6 exp", 4),
+        ("rkmk dop853 exp", 4),
+        ("rk dop853", 4),
+    ] {
+        let (problem, calls) = attitudes();
+        let method = problem.method(&name.parse().expect(name)).expect(name);
+        let run = |times: Option<&[f64]>| {
+            let solve = Solve::new(&problem, &method, [1.0, 4.0]).tolerances(1e-6, 1e-6);
+            let solve = match times {
+                Some(times) => solve.times(times),
+                None => solve.every(1),
+            };
+            let before = calls.load(Ordering::Relaxed);
+            let run = solve.run(Matrix3::identity()).expect(name);
+            (calls.load(Ordering::Relaxed) - before, run)
+        };
+        let (called, steps) = run(None);
+        let within: Vec<f64> = steps.times.windows(2).map(|t| 0.7 * t[0] + 0.3 * t[1]).collect();
+        let (called_more, rows) = run(Some(&within));
+        assert_eq!((rows.y, rows.stats.points_within), (steps.y, steps.stats.accepted), "{name}");
+        let more = each * steps.stats.accepted;
+        assert_eq!(called_more - called, more, "{name}");
+        let counted = [&rows, &steps].map(|run| run.stats.evaluations.expect("known"));
+        assert_eq!(counted[0] - counted[1], more, "{name}");
+    }
+}
+
 /// With these methods the points of the interpolant are those of dense output, and f is not called for them.
 #[test]
 fn the_interpolant_is_dense_output_without_f() {
