@@ -127,7 +127,11 @@ impl<P: Problem> DynField<P::Group, PointOf<P>> for ProblemWithWork<P> {
 }
 
 impl<G: LieGroup + Clone + 'static, A: Action<G> + 'static, L, H> DynFlow<G, A, L, H> {
-    /// Makes it from a problem. `action` is its action, or another one with the same values.
+    /// Makes it from a problem. `action` is its action, or another one with the same values: of [`Flow::new`] the one that
+    /// was given there, of [`Flow::in_body`] `RightTranslation`. With any other the run is wrong, which no check can see.
+    ///
+    /// [`Flow::new`]: super::Flow::new
+    /// [`Flow::in_body`]: super::Flow::in_body
     pub fn new<P>(problem: P, action: A) -> Self
     where
         P: Problem<Group = G> + Send + Sync + 'static,

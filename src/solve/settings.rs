@@ -13,6 +13,9 @@ use crate::error::Error;
 /// The default rtol and atol.
 const DEFAULT: (f64, f64) = (1e-6, 1e-9);
 
+/// What is expected of settings that choose the size of the steps twice.
+const ONE_CHOICE: &str = "only one of dt, steps and tolerances in a run";
+
 /// The settings of a run that do not depend on the types of its problem and method.
 pub(super) struct Settings<'a> {
     pub(super) t_span: [f64; 2],
@@ -62,9 +65,7 @@ impl<'a> Settings<'a> {
     pub(super) fn equal(&mut self, grid: Result<TimeGrid, Error>) {
         if let Some(grid) = self.or_wrong(grid) {
             if self.pace.is_some() {
-                let why =
-                    "the size of the steps was chosen already: give one of dt, steps, tolerances";
-                self.wrong.get_or_insert(Error::out_of_range("dt", grid.h().abs(), why));
+                self.wrong.get_or_insert(Error::out_of_range("dt", grid.h().abs(), ONE_CHOICE));
             }
             self.pace = Some(Pace::Equal { grid, max_steps: u64::MAX });
         }
@@ -72,8 +73,7 @@ impl<'a> Settings<'a> {
 
     pub(super) fn control(&mut self, control: StepControl) {
         if let Some(Pace::Equal { grid, .. }) = &self.pace {
-            let why = "the size of the steps was chosen already: give one of dt, steps, tolerances";
-            let error = Error::out_of_range("dt", grid.h().abs(), why);
+            let error = Error::out_of_range("dt", grid.h().abs(), ONE_CHOICE);
             self.wrong.get_or_insert(error);
         }
         self.pace = Some(Pace::ByError(control));

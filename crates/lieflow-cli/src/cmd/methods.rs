@@ -380,12 +380,18 @@ enum Named {
     Map(&'static MapInfo),
 }
 
-/// What is called by this name.
+/// The tableau with this name.
+fn tableau_named(name: &str) -> Option<&'static TableauInfo> {
+    TABLEAUS.iter().find(|tableau| same(tableau.name, name))
+}
+
+/// What is called by this name: a method, if one is.
 ///
 /// # Errors
 /// Nothing is.
 fn named(name: &str) -> Result<Named, CliError> {
-    if let Some(tableau) = TABLEAUS.iter().find(|tableau| same(tableau.name, name)) {
+    let is_method = all_methods().any(|info| same(info.name, name));
+    if let Some(tableau) = tableau_named(name).filter(|_| !is_method) {
         return Ok(Named::Tableau(tableau));
     }
     if let Some(map) = MAPS.iter().find(|map| same(map.name, name)) {
@@ -454,7 +460,11 @@ pub fn run(args: &MethodsArgs) -> Result<(), CliError> {
     if let Some(name) = &args.name {
         return match (named(name)?, args.json) {
             (Named::Method(entry), true) => print_json(&entry),
-            (Named::Method(entry), false) => print(&one_in_words(&entry)),
+            (Named::Method(entry), false) => {
+                let tableau =
+                    tableau_named(name).map(|info| "\n".to_owned() + &tableau_in_words(info));
+                print(&(one_in_words(&entry) + &tableau.unwrap_or_default()))
+            }
             (Named::Tableau(tableau), true) => print_json(&TableauEntry::of(tableau)),
             (Named::Tableau(tableau), false) => print(&tableau_in_words(tableau)),
             (Named::Map(map), true) => print_json(&MapEntry::of(map)),

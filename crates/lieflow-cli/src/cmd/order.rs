@@ -17,6 +17,9 @@ const HALVINGS: u32 = 11;
 /// A method whose runs have taken so long takes no smaller steps.
 const LONGEST: Duration = Duration::from_secs(2);
 
+/// A measured order that is farther from the order of the method is explained.
+const SETTLED: f64 = 0.5;
+
 /// The orders as JSON.
 #[derive(Serialize)]
 struct Json<'a> {
@@ -147,6 +150,9 @@ fn in_words(scene: &Scene, curves: &[Curve], reference: &Reference) -> String {
     );
     for curve in curves {
         let order = match (curve.order, curve.measured_order()) {
+            (Some(order), Some(found)) if (found - order as f64).abs() > SETTLED => format!(
+                "order {order}, measured {found:.2}: the slopes of these runs have not settled at the order"
+            ),
             (Some(order), Some(found)) => format!("order {order}, measured {found:.2}"),
             (Some(order), None) => format!(
                 "order {order}; it cannot be measured here: no three runs that are clear of rounding have one slope"

@@ -146,11 +146,16 @@ impl Candidate {
             if !all.iter().any(|candidate| stands_for(name, candidate)) {
                 let mut known: Vec<&str> = all.iter().map(|c| c.method.name.as_str()).collect();
                 known.dedup();
-                let near = suggest(name, &known).map(|near| format!("; did you mean `{near}`?"));
+                // A method that does not fit is spelt right.
+                let first = name.split_whitespace().next().unwrap_or_default();
+                let is_spelt = all_methods().any(|info| info.name == first);
+                let near = suggest(name, &known).filter(|_| !is_spelt);
+                let near = near.map(|near| format!("did you mean `{near}`?"));
+                let listed =
+                    || "`lieflow methods --for` with the scene lists those that fit".into();
                 return Err(CliError::Message(format!(
-                    "no method `{name}` fits this scene{} It takes: {}",
-                    near.unwrap_or_else(|| ".".into()),
-                    known.join(", ")
+                    "no method `{name}` fits this scene; {}",
+                    near.unwrap_or_else(listed)
                 )));
             }
         }

@@ -172,8 +172,12 @@ impl<'a> Document<'a> {
         SceneError::new(self.source, message).at(self.text, self.file, place).with_help(help)
     }
 
-    /// What to do about an unknown key that another section has.
+    /// What to do about an unknown key that another section has. A section that is misspelt is no key.
     fn other_section(&self, section: &str, given: &str, names: &[&str]) -> Option<String> {
+        let is_section = self.get(given).is_some_and(|value| value.as_table().is_some());
+        if is_section && names == TOP {
+            return None;
+        }
         let kind = self.within::<String>("problem", "kind");
         let mut sections = sections(kind.as_deref()).into_iter();
         let (other, _) = sections.find(|(name, keys)| *name != section && keys.contains(&given))?;
