@@ -164,8 +164,9 @@ fn t4_arguments_are_named() {
     starts(said(over([0.0, 1.0]).dt(0.1).every(0)), "every");
     starts(said(over([0.0, 1.0]).dt(0.1).stops([0.5, f64::NAN])), "stops[1]");
     // Two ways to choose the steps.
-    starts(said(over([0.0, 1.0]).dt(0.1).steps(10)), "dt");
-    starts(said(over([0.0, 1.0]).dt(0.1).tolerances(1e-6, 1e-6)), "dt");
+    let twice = "dt = 0.1, expected only one of dt, steps and tolerances in a run";
+    starts(said(over([0.0, 1.0]).dt(0.1).steps(10)), twice);
+    starts(said(over([0.0, 1.0]).dt(0.1).tolerances(1e-6, 1e-6)), twice);
     starts(said(over([0.0, 1.0]).tolerances(1e-6, 1e-6).dt(0.1)), "dt");
     // The first wrong value is the one that is told.
     starts(said(over([0.0, 1.0]).tolerances(-1.0, 1e-6).max_step(-1.0)), "rtol");

@@ -174,17 +174,17 @@ struct Told {
     start: Instant,
     last: Instant,
     lines: bool,
-    /// Says how a comparison takes less time, once it has taken long.
-    hint: &'static str,
+    /// What makes a long comparison shorter, until it is told in a line.
+    hint: Option<&'static str>,
 }
 
 /// What makes a comparison of all methods at all errors shorter.
 const SHORTER: &str =
-    "; with --error 1e-6 it measures only what reaches that error, in a fraction of the time";
+    "with --error 1e-6 it measures only what reaches that error, in a fraction of the time";
 
 impl Told {
     fn new(of_all: bool) -> Self {
-        let (now, hint) = (Instant::now(), if of_all { SHORTER } else { "" });
+        let (now, hint) = (Instant::now(), of_all.then_some(SHORTER));
         let lines = !io::stderr().is_terminal();
         Told { bar: Progress::new(), start: now, last: now, lines, hint }
     }
@@ -192,13 +192,12 @@ impl Told {
     /// This share of the work is done, after a run that was measured.
     fn at(&mut self, share: f64) -> Result<(), CliError> {
         let is_long = self.start.elapsed() >= TOLD_EVERY;
-        self.bar
-            .often(share, || if is_long { self.hint } else { "" }.trim_start_matches("; ").into());
+        self.bar.often(share, || self.hint.filter(|_| is_long).unwrap_or_default().into());
         if self.lines && self.last.elapsed() >= TOLD_EVERY {
             self.last = Instant::now();
             let seconds = self.start.elapsed().as_secs();
             // A reader that went away is no reason to stop.
-            let hint = core::mem::take(&mut self.hint);
+            let hint = self.hint.take().map_or(String::new(), |hint| format!("; {hint}"));
             let _ = writeln!(io::stderr(), "{:.0} % after {seconds} s{hint}", 100.0 * share);
         }
         Ok(())

@@ -116,6 +116,10 @@ fn events_that_never_come_or_are_missed_are_told() {
 #[test]
 fn a_key_of_another_section_is_told_with_it() {
     let folder = Folder::new();
+    // A section that is misspelt is no key of another one.
+    let message = refused(&folder, "[time]", "[times]");
+    assert!(message.contains("unknown key `times`"), "{message}");
+    assert!(message.contains("did you mean `time`?"), "{message}");
     let inertia = "inertia = [1, 2.0, 3.0]";
     for (key, help) in [
         ("times = [1]", "`times` is a key of [output]\n"),
@@ -339,6 +343,10 @@ fn methods_answers_for_tableaus_maps_and_parts() {
     assert!(dop853.contains("tableau of order 8 with 12 stages"), "{dop853}");
     assert!(dop853.contains("methods that take it: rkmk,"), "{dop853}");
     assert!(told("cay").contains("A coordinate map: "));
+    // A method and a tableau.
+    let both = told("rk4");
+    assert!(both.starts_with("rk4\n classical Runge–Kutta on the entries"), "{both}");
+    assert!(both.contains("A Runge–Kutta tableau of order 4 with 4 stages"), "{both}");
     let spelt = told("rkmk dopri5 cay");
     for line in ["rkmk\n", "order: 5\n", "maps: cay\n", "tableaus: dopri5\n"] {
         assert!(spelt.contains(line), "{line}{spelt}");
