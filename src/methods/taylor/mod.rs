@@ -23,7 +23,7 @@ mod series;
 use nalgebra::Vector3;
 
 pub use lanes::Wide;
-use series::{Advance, Body, OneStep, Terms, at, at_end, error, reach, rotation};
+use series::{Advance, Body, OneStep, at, error, reach, rotation, square_of};
 
 use super::embedded::ratio_of_relative;
 use super::simo_wong::turn_by;
@@ -64,7 +64,9 @@ impl<const N: usize> Taylor<N> {
         P::Group: LieAlgebra<Scalar = f64>,
     {
         let (body, m) = (Body::new(problem.inverse_inertia()), problem.load(y).0);
-        h * reach::<N>(f64::dispatch(OneStep::<_, N> { body: &body, h, m }).1, tolerance)
+        let mut terms = [[0.0; 4]; N];
+        f64::dispatch(OneStep { body: &body, h, m, terms: &mut terms });
+        h * reach::<N>([terms[N - 2], terms[N - 1]].map(square_of), tolerance)
     }
 
     /// Advances y over the time `span`. Returns the number of steps.
@@ -118,11 +120,11 @@ pub struct TaylorWork<S, const N: usize> {
 }
 
 impl<S: Wide, const N: usize> TaylorWork<S, N> {
-    /// terms ← those of a step of size h from the momentum m.
+    /// The quaternion of a step of size h from the momentum m. The terms are then those of this step.
     #[inline(always)]
-    fn set(&mut self, j: &Vector3<S>, h: S, m: Vector3<S>) {
-        self.terms = S::dispatch(Terms(OneStep { body: &Body::new(j), h, m }));
+    fn step(&mut self, j: &Vector3<S>, h: S, m: Vector3<S>) -> [S; 4] {
         self.of = Some((h, m));
+        S::dispatch(OneStep { body: &Body::new(j), h, m, terms: &mut self.terms })
     }
 }
 
@@ -147,14 +149,13 @@ where
         problem: &P,
         Step { h, .. }: Step<ScalarOf<P>>,
         y: &mut PointOf<P>,
-        _: &mut Self::Work,
+        work: &mut Self::Work,
     ) -> Result<(), StepError> {
         let (m, mut frame) = problem.load(y);
-        let body = Body::new(problem.inverse_inertia());
-        let (q, _) = ScalarOf::<P>::dispatch(OneStep::<_, N> { body: &body, h, m });
+        let q = work.step(problem.inverse_inertia(), h, m);
         turn_by(problem, &rotation(q), m, &mut frame, y)
     }
-    /// A step with an error estimate has its terms. Another one needs them again.
+    /// The last step has its terms. Those of another one are computed.
     fn prepare(
         &self,
         problem: &P,
@@ -165,7 +166,7 @@ where
     ) -> Result<(), StepError> {
         let m = problem.load(from).0;
         if work.of != Some((h, m)) {
-            work.set(problem.inverse_inertia(), h, m);
+            work.step(problem.inverse_inertia(), h, m);
         }
         Ok(())
     }
@@ -207,11 +208,10 @@ where
     ) -> Result<ScalarOf<P>, StepError> {
         let (m, mut frame) = problem.load(from);
         let j = problem.inverse_inertia();
-        work.set(j, h, m);
-        let terms = &work.terms;
-        turn_by(problem, &rotation(at_end(terms)), m, &mut frame, to)?;
+        let q = work.step(j, h, m);
+        turn_by(problem, &rotation(q), m, &mut frame, to)?;
         // The angle is twice that of the quaternion.
-        let error = 2.0 * error(terms);
+        let error = 2.0 * error(&work.terms);
         let omega = Vector3::new(j[0] * m[0], j[1] * m[1], j[2] * m[2]);
         let length = h.abs() * So3::new().norm(&omega);
         Ok(ratio_of_relative(tolerance, Real::lit(error), from, length))

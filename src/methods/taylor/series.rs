@@ -31,98 +31,125 @@ impl<S: Wide> Body<S> {
         }
     }
 
-    /// The coefficients q₁ hᵏ, …, q_N hᵏ of the quaternion.
+    /// The coefficients q₁ h, …, q_N hᴺ of the quaternion.
     #[inline(always)]
     fn terms<L: Lanes<S>, const N: usize>(&self, l: L, h: S, m: L::V) -> [L::V; N] {
         const { assert!(4 <= N && N <= INVERSE.len(), "4 ≤ order ≤ 16") };
-        let zero = l.splat(S::lit(0.0));
-        let (rate, half, h) = (l.load(self.rate), l.load(self.half), l.splat(h));
-        let pair = l.pair([zero; 2]);
-        // Of each coefficient the factors of its products: q ∘ e_i with (y, z, x) of m, and ω/2 with (z, x, y).
-        let mut left = [[pair; 2]; N];
-        let mut right = [[pair; 2]; N];
-        let mut out = [zero; N];
-        let first = l.cycled(m);
-        let omega = l.spread(l.mul(half, m));
-        let (mut m, mut q) = (m, zero);
-        for k in 0..N {
-            let w = l.mul(half, m);
-            let [m_yzx, m_zxy] = l.cycled(m);
-            let [w_x, w_y, w_z] = l.spread(w);
-            let [q_x, q_y, q_z] = l.products(q);
-            left[k] = [l.pair([q_x, q_y]), l.pair([q_z, m_yzx])];
-            right[k] = [l.pair([w_x, w_y]), l.pair([w_z, m_zxy])];
-            // What is older than m_k and q_k is summed while these are on their way; q_0 ∘ ω = ω.
-            let mut sums = [pair; 2];
-            for j in k.div_ceil(2)..k {
-                for a in [0, 1] {
-                    sums[a] = l.mul_add_pairs(left[j][a], right[k - j][a], sums[a]);
-                    if j != k - j {
-                        sums[a] = l.mul_add_pairs(left[k - j][a], right[j][a], sums[a]);
-                    }
-                }
-            }
-            let ([x, y], [z, of_m]) = (l.halves(sums[0]), l.halves(sums[1]));
-            let scale = l.mul(h, l.splat(S::inverse(k)));
-            let rate = l.mul(scale, rate);
-            m = l.mul_add(m_yzx, l.mul(rate, first[1]), l.mul(rate, of_m));
-            if k > 0 {
-                m = l.mul_add(m_zxy, l.mul(rate, first[0]), m);
-            }
-            let older = l.mul(scale, l.add(z, l.add(x, y)));
-            // No `map`: in a build of many units without LTO it leaves the lanes.
-            let omega = [l.mul(scale, omega[0]), l.mul(scale, omega[1]), l.mul(scale, omega[2])];
-            q = l.add(
-                l.mul_add(q_x, omega[0], l.mul_add(scale, w, older)),
-                l.mul_add(q_y, omega[1], l.mul(q_z, omega[2])),
-            );
-            out[k] = q;
+        let mut out = [l.splat(S::lit(0.0)); N];
+        let mut to_k = Recurrence::<S, L, N>::new(l, self, h, m);
+        // In a loop the sums of products, whose number changes from one k to the next, take a fifth more time.
+        macro_rules! each {
+            ($($k:literal)*) => {{$(if $k < N { out[$k] = to_k.next($k); })*}};
+        }
+        match L::IS_UNROLLED {
+            true => each!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15),
+            false => (0..N).for_each(|k| out[k] = to_k.next(k)),
         }
         out
+    }
+}
+
+/// The coefficients m_k hᵏ and q_k hᵏ, and the factors of the products of all before.
+struct Recurrence<S, L: Lanes<S>, const N: usize> {
+    l: L,
+    rate: L::V,
+    half: L::V,
+    h: L::V,
+    /// (y, z, x) and (z, x, y) of m_0.
+    first: [L::V; 2],
+    /// ω_0/2, each number in all lanes.
+    omega: [L::V; 3],
+    m: L::V,
+    q: L::V,
+    /// q ∘ e_i, and (y, z, x) of m.
+    left: [[L::W; 2]; N],
+    /// ω/2, each number in all lanes, and (z, x, y) of m.
+    right: [[L::W; 2]; N],
+}
+
+impl<S: Wide, L: Lanes<S>, const N: usize> Recurrence<S, L, N> {
+    #[inline(always)]
+    fn new(l: L, body: &Body<S>, h: S, m: L::V) -> Self {
+        let (rate, half) = (l.load(body.rate), l.load(body.half));
+        let (first, omega) = (l.cycled(m), l.spread(l.mul(half, m)));
+        let q = l.splat(S::lit(0.0));
+        let none = [[l.pair([q; 2]); 2]; N];
+        Recurrence { l, rate, half, h: l.splat(h), first, omega, m, q, left: none, right: none }
+    }
+
+    /// q_{k+1} hᵏ⁺¹, from all up to k.
+    #[inline(always)]
+    fn next(&mut self, k: usize) -> L::V {
+        let Recurrence { l, rate, half, h, first, omega, m, q, ref mut left, ref mut right } =
+            *self;
+        let w = l.mul(half, m);
+        let [m_yzx, m_zxy] = l.cycled(m);
+        let [w_x, w_y, w_z] = l.spread(w);
+        let [q_x, q_y, q_z] = l.products(q);
+        left[k] = [l.pair([q_x, q_y]), l.pair([q_z, m_yzx])];
+        right[k] = [l.pair([w_x, w_y]), l.pair([w_z, m_zxy])];
+        // What is older than m_k and q_k is summed while these are on their way; q_0 ∘ ω = ω. Two sums do not wait for
+        // each other.
+        let mut sums = [[l.pair([l.splat(S::lit(0.0)); 2]); 2]; 2];
+        for j in k.div_ceil(2)..k {
+            for a in [0, 1] {
+                sums[0][a] = l.mul_add_pairs(left[j][a], right[k - j][a], sums[0][a]);
+                if j != k - j {
+                    sums[1][a] = l.mul_add_pairs(left[k - j][a], right[j][a], sums[1][a]);
+                }
+            }
+        }
+        let [[xy, z_m], [xy_2, z_m_2]] = sums;
+        let ([x, y], [z, of_m]) = (l.halves(xy), l.halves(z_m));
+        let ([x_2, y_2], [z_2, of_m_2]) = (l.halves(xy_2), l.halves(z_m_2));
+        let older = l.add(l.add(z, z_2), l.add(l.add(x, x_2), l.add(y, y_2)));
+        let of_m = l.add(of_m, of_m_2);
+
+        let scale = l.mul(h, l.splat(S::inverse(k)));
+        let rate = l.mul(scale, rate);
+        self.m = l.mul_add(m_yzx, l.mul(rate, first[1]), l.mul(rate, of_m));
+        if k > 0 {
+            self.m = l.mul_add(m_zxy, l.mul(rate, first[0]), self.m);
+        }
+        // No `map`: in a build of many units without LTO it leaves the lanes.
+        let omega = [l.mul(scale, omega[0]), l.mul(scale, omega[1]), l.mul(scale, omega[2])];
+        self.q = l.add(
+            l.mul_add(q_x, omega[0], l.mul_add(scale, w, l.mul(scale, older))),
+            l.mul_add(q_y, omega[1], l.mul(q_z, omega[2])),
+        );
+        self.q
     }
 }
 
 /// |v|².
 #[inline(always)]
 fn square<S: Real, L: Lanes<S>>(l: L, v: L::V) -> S {
-    let [x, y, z, w] = l.store(l.mul(v, v));
-    (x + y) + (z + w)
+    square_of(l.store(v))
 }
 
-/// A step: the quaternion at h, not yet of length 1, and the squares of its last two terms.
+/// A step: the quaternion at h, not yet of length 1. `terms` ← the coefficients of θ, …, θᴺ of the quaternion at θh.
 pub(super) struct OneStep<'a, S, const N: usize> {
     pub(super) body: &'a Body<S>,
     pub(super) h: S,
     pub(super) m: Vector3<S>,
+    pub(super) terms: &'a mut [[S; 4]; N],
 }
 
 impl<S: Wide, const N: usize> Kernel<S> for OneStep<'_, S, N> {
-    type Out = ([S; 4], [S; 2]);
+    type Out = [S; 4];
 
     #[inline(always)]
-    fn run<L: Lanes<S>>(self, l: L) -> Self::Out {
-        let m = l.load([self.m[0], self.m[1], self.m[2], S::lit(0.0)]);
-        let terms = self.body.terms::<L, N>(l, self.h, m);
-        let mut sum = l.splat(S::lit(0.0));
-        for term in terms.iter().rev() {
-            sum = l.add(sum, *term); // small terms first
-        }
-        let q = l.add(sum, l.load(unit()));
-        (l.store(q), [square(l, terms[N - 2]), square(l, terms[N - 1])])
-    }
-}
-
-/// The terms of a step: the coefficients of θ, …, θᴺ of the quaternion at θh.
-pub(super) struct Terms<'a, S, const N: usize>(pub(super) OneStep<'a, S, N>);
-
-impl<S: Wide, const N: usize> Kernel<S> for Terms<'_, S, N> {
-    type Out = [[S; 4]; N];
-
-    #[inline(always)]
-    fn run<L: Lanes<S>>(self, l: L) -> Self::Out {
-        let OneStep { body, h, m } = self.0;
+    fn run<L: Lanes<S>>(self, l: L) -> [S; 4] {
+        let OneStep { body, h, m, terms } = self;
         let m = l.load([m[0], m[1], m[2], S::lit(0.0)]);
-        body.terms::<L, N>(l, h, m).map(|term| l.store(term))
+        let found = body.terms::<L, N>(l, h, m);
+        // As `at` has it for θ = 1.
+        let mut sums = [l.splat(S::lit(0.0)); 2];
+        for k in (0..N).rev() {
+            terms[k] = l.store(found[k]);
+            sums[k % 2] = l.add(sums[k % 2], found[k]);
+        }
+        l.store(l.add(l.add(sums[0], sums[1]), l.load(unit())))
     }
 }
 
@@ -142,20 +169,6 @@ pub(super) fn at<S: Real, const N: usize>(terms: &[[S; 4]; N], theta: S) -> [S; 
     q
 }
 
-/// The quaternion at the end of the step: [`at`] for θ = 1.
-#[inline(always)]
-pub(super) fn at_end<S: Real, const N: usize>(terms: &[[S; 4]; N]) -> [S; 4] {
-    let mut sums = [[S::lit(0.0); 4]; 2];
-    for (k, term) in terms.iter().enumerate().rev() {
-        for i in 0..4 {
-            sums[k % 2][i] += term[i];
-        }
-    }
-    let mut q = core::array::from_fn(|i| sums[0][i] + sums[1][i]);
-    q[3] += S::lit(1.0);
-    q
-}
-
 /// The error of a step: the last term, or the one before to the power N/(N − 1), because one of both may vanish where the
 /// motion is even or odd.
 #[inline(always)]
@@ -167,7 +180,7 @@ pub(super) fn error<S: Real + Into<f64>, const N: usize>(terms: &[[S; 4]; N]) ->
 
 /// |term|².
 #[inline(always)]
-fn square_of<S: Real>([x, y, z, w]: [S; 4]) -> S {
+pub(super) fn square_of<S: Real>([x, y, z, w]: [S; 4]) -> S {
     (x * x + y * y) + (z * z + w * w)
 }
 
