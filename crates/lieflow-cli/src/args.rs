@@ -240,8 +240,9 @@ pub struct PlotArgs {
 
 Written: index.html, speed.csv and speed.json with every run, the figures as SVG files, and points.jsonl
 with everything that was measured. A comparison that is stopped goes on from there when the command is given
-again. One with other options adds to it, as --repeat 9 after --repeat 5. With --error and without --all, methods
-that are many times slower than the best are left out soon. Events of the scene are left out.")]
+again. One with other options adds to it, as --repeat 9 after --repeat 5. A run that takes many times as long as the
+best one to its error is timed once. With --error and without --all, methods that are many times slower than the best
+are left out soon. Events of the scene are left out.")]
 pub struct CompareArgs {
     /// A scene file, the name of a bundled scene, or - for standard input.
     pub scene: PathBuf,

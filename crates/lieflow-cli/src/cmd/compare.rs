@@ -12,7 +12,7 @@ use super::stop::{INTERRUPTED, listen};
 use crate::args::CompareArgs;
 use crate::error::CliError;
 use crate::measure::{
-    Candidate, Curve, Effort, Journal, Kept, MOST_ROWS, Plan, Reached, Reference, Rows,
+    Candidate, Curve, Effort, Journal, Kept, MOST_ROWS, Plan, Reached, Reference, Rows, SLOW,
     speed_against_error,
 };
 use crate::output::{self, Progress};
@@ -410,7 +410,8 @@ impl Comparison<'_> {
         let mut facts = report::conditions(rounds).to_vec();
         let runs = format!(
             "steps get smaller until a run takes {longest:?}; where no method has reached an error that is asked \
-             for, the most promising ones go on to {patience:?}"
+             for, the most promising ones go on to {patience:?}; a run that takes {SLOW} times as long as the best one \
+             to its error is timed once"
         );
         let rows = format!(
             "each timed run gives the rows of the scene, {MOST_ROWS} at most; events are left out"

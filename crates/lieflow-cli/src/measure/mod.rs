@@ -175,15 +175,19 @@ pub fn speed_against_error(
     let mut lines: Vec<Line<'_>> = lines.into_iter().map(|(_, line)| line).collect();
     bench.go_on(&mut lines)?;
     let Bench { mut journal, mut jobs, tick, .. } = bench;
-    if let Some(goal) = effort.goal {
-        let length = (t_span[1] - t_span[0]).abs();
-        // What is far from the goal, or slow, is not timed again.
-        jobs.retain(|job| {
-            let point = &mut lines[job.curve].curve.points[job.point];
-            point.seconds_per_unit = (point.first_seconds + point.output_seconds) / length;
-            point.error <= NEAR * goal && point.first_seconds <= SLOW * best
-        });
-    }
+    let length = (t_span[1] - t_span[0]).abs();
+    // Methods that leave M, and the exact motion, say nothing of the others.
+    let ahead = lines.iter().map(|line| &line.curve).filter(|c| c.stays && c.order.is_some());
+    let ahead = Ahead::of(ahead.flat_map(|c| &c.points).map(|p| (p.error, p.first_seconds)));
+    // What is far from the goal, or slow, is not timed again.
+    jobs.retain(|job| {
+        let point = &mut lines[job.curve].curve.points[job.point];
+        point.seconds_per_unit = (point.first_seconds + point.output_seconds) / length;
+        match effort.goal {
+            Some(goal) => point.error <= NEAR * goal && point.first_seconds <= SLOW * best,
+            None => point.first_seconds <= SLOW * ahead.seconds(point.error),
+        }
+    });
     let mut rng = Pcg64::seed_from_u64(effort.seed);
     for round in 0..effort.rounds {
         jobs.shuffle(&mut rng);
@@ -207,7 +211,6 @@ pub fn speed_against_error(
             }
         }
     }
-    let length = (t_span[1] - t_span[0]).abs();
     for mut job in jobs {
         let point = &mut lines[job.curve].curve.points[job.point];
         point.seconds_per_unit = (median(&mut job.times) + point.output_seconds) / length;
@@ -241,8 +244,31 @@ impl Line<'_> {
     }
 }
 
-/// A method that is this many times slower than the best is left out.
-const SLOW: f64 = 8.0;
+/// The least times to each error, from the smallest error to the largest.
+struct Ahead(Vec<(f64, f64)>);
+
+impl Ahead {
+    /// Of runs with these errors and times. A run that failed has none.
+    fn of(runs: impl Iterator<Item = (f64, f64)>) -> Self {
+        let mut known: Vec<_> = runs.filter(|(error, time)| (error + time).is_finite()).collect();
+        known.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut least = f64::INFINITY;
+        for (_, seconds) in &mut known {
+            least = least.min(*seconds);
+            *seconds = least;
+        }
+        Ahead(known)
+    }
+
+    /// The least time of a run whose error is not larger; infinite if there is none.
+    fn seconds(&self, error: f64) -> f64 {
+        let count = self.0.partition_point(|&(known, _)| known <= error);
+        self.0[..count].last().map_or(f64::INFINITY, |&(_, seconds)| seconds)
+    }
+}
+
+/// A method that is this many times slower than the best is left out, or timed once.
+pub const SLOW: f64 = 8.0;
 /// An error is near the goal if it is at most this many times the goal.
 const NEAR: f64 = 1e4;
 
@@ -382,5 +408,18 @@ impl Size {
             true => seconds((shortest / took.max(1e-9)).ceil() as u32),
             false => Ok(took),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Ahead;
+
+    #[test]
+    fn the_least_time_is_that_of_a_run_whose_error_is_not_larger() {
+        let runs = [(1e-3, 2.0), (f64::NAN, 0.1), (1e-9, 5.0), (1e-6, 7.0), (1e-4, f64::NAN)];
+        let ahead = Ahead::of(runs.into_iter());
+        let found = [1e-2, 1e-3, 1e-5, 1e-6, 1e-9, 1e-10].map(|error| ahead.seconds(error));
+        assert_eq!(found, [2.0, 2.0, 5.0, 5.0, 5.0, f64::INFINITY]);
     }
 }
