@@ -408,6 +408,9 @@ fn settings_change_a_scene() {
         ("problem=1", "`problem` is a section, expected a key in it"),
         ("time.dt=0,1", "`0,1` is no value of TOML"),
         ("time.dt=fast", "\"fast\" is not a number"),
+        // A text with parentheses needs no quotes.
+        ("problem.group=SO(3)", "unknown key `group` in [problem]"),
+        ("problem.inertia=[1, f(2)]", "`[1, f(2)]` is no value of TOML"),
     ] {
         let message = run(&[set]).refused();
         assert!(message.contains(what), "{set}: {message}");

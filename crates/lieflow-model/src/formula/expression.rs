@@ -137,11 +137,12 @@ impl Formula {
     pub fn check(&self, start: &[f64]) -> Option<Refusal> {
         self.forget();
         let value = self.value(start);
-        let Lost { key, through, by, value, .. } =
-            (!value.is_finite()).then(|| self.lost(Which::First)).flatten()?;
+        let lost = (!value.is_finite()).then(|| self.lost(Which::First)).flatten()?;
+        let place = if lost.at.is_empty() { String::new() } else { format!(" ({})", lost.place()) };
+        let Lost { key, through, by, value, .. } = lost;
         let key = through.unwrap_or(key);
         let what = by.map_or_else(|| key.clone(), |by| format!("{key}: its derivative by {by}"));
-        let message = format!("{what} is {value} at the start, expected a number");
+        let message = format!("{what} is {value} at the start{place}, expected a number");
         Some(Refusal::at(key, message))
     }
 }

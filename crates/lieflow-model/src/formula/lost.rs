@@ -140,6 +140,15 @@ fn needed<'a>(text: &str, names: &'a Names) -> Vec<&'a str> {
 /// Variables that are shown.
 const SHOWN: usize = 9;
 
+impl Lost {
+    /// The first variables with their values, as in `x = 1, y = 2`.
+    pub(super) fn place(&self) -> String {
+        let shown = self.at.iter().take(SHOWN).map(|(name, x)| format!("{name} = {x}"));
+        let rest = (self.at.len() > SHOWN).then(|| "…".into());
+        shown.chain(rest).collect::<Vec<String>>().join(", ")
+    }
+}
+
 impl fmt::Display for Lost {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Lost { key, through, text, by, value, at } = self;
@@ -151,9 +160,6 @@ impl fmt::Display for Lost {
             write!(f, ", which {key} needs,")?;
         }
         write!(f, " is {value}")?;
-        for (i, (name, x)) in at.iter().take(SHOWN).enumerate() {
-            write!(f, "{} {name} = {x}", if i == 0 { " at" } else { "," })?;
-        }
-        f.write_str(if at.len() > SHOWN { ", …" } else { "" })
+        if at.is_empty() { Ok(()) } else { write!(f, " at {}", self.place()) }
     }
 }

@@ -79,7 +79,7 @@ fn a_formula_has_no_value_where_it_has_none() {
     }
     let pole = read("1/(x - 1)").unwrap();
     let refusal = pole.check(&[1.0, 0.0, 0.0]).unwrap();
-    assert_eq!(refusal.message, "f is inf at the start, expected a number");
+    assert_eq!(refusal.message, "f is inf at the start (x = 1), expected a number");
     assert_eq!(pole.check(&[2.0, 0.0, 0.0]), None);
     assert!(pole.value::<f64>(&[]).is_nan(), "a value that is missing is none");
     // What only follows from a variable is no loss; of others the first and the last are kept.

@@ -127,14 +127,15 @@ fn steps(path: &str) -> Result<Vec<Step<'_>>, String> {
     Ok(steps)
 }
 
-/// A value; none for nothing. One word is a text, with or without quotes.
+/// A value; none for nothing. A word, a name such as SO(3) and a formula with parentheses are texts, with or without quotes.
 fn value(text: &str) -> Result<Option<Value>, String> {
     let is_word = text.starts_with(|c: char| c.is_ascii_alphabetic())
         && text.chars().all(|c| c.is_ascii_alphanumeric() || "-_".contains(c));
+    let is_formula = text.contains('(') && !text.starts_with(['[', '{', '"', '\'']);
     match text.parse() {
         _ if text.is_empty() => Ok(None),
         Ok(value) => Ok(Some(value)),
-        Err(_) if is_word => Ok(Some(text.into())),
+        Err(_) if is_word || is_formula => Ok(Some(text.into())),
         Err(_) => Err(format!(
             "`{text}` is no value of TOML, expected a number, a list such as [1, 2, 3] or a text in quotes"
         )),
