@@ -191,9 +191,15 @@ where
         let Inner { stages: Stages { k, u, chart }, points, aside } = self;
         for (i, weights) in product.factors.iter().enumerate() {
             problem.group().combine(h, weights, k, u);
+            let copy;
             let from = match (i, product.from) {
                 (0, 0) => p,
                 (0, from) => &points[from],
+                // A swap of small points goes through memory.
+                _ if PointOf::<P>::IS_SMALL => {
+                    copy = to.clone();
+                    &copy
+                }
                 _ => {
                     core::mem::swap(aside, to);
                     &*aside
@@ -219,7 +225,10 @@ where
         chart.around(problem, &Exp, step.n, p).field(step.t, &mut k[0]);
         for i in 1..count {
             self.product(problem, step, p, &table.stages[i], to)?;
-            core::mem::swap(&mut self.points[i], to);
+            match PointOf::<P>::IS_SMALL {
+                true => self.points[i].assign(to),
+                false => core::mem::swap(&mut self.points[i], to),
+            }
             let t = step.t + step.h * ScalarOf::<P>::lit(table.c[i]);
             let Stages { k, chart, .. } = &mut self.stages;
             chart.around(problem, &Exp, step.n, &self.points[i]).field(t, &mut k[i]);
