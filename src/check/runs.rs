@@ -552,6 +552,13 @@ fn adaptive(
         let speed = change / (times[i + 1] - times[i - 1]).abs();
         let gaps = record.events.iter().map(|t| (t - times[i]).abs());
         let gap = gaps.fold(f64::INFINITY, f64::min) * speed;
+        // A coarse run may stay on one side of the value. Then it is as far away as its number at that time.
+        let beside = record.rows.iter().map(|row| row[place] - rows[i][place]);
+        let sides = beside.clone().fold([false; 2], |[b, a], x| [b || x <= 0.0, a || x >= 0.0]);
+        let gap = match (record.events.is_empty(), sides, beside.clone().nth(i)) {
+            (true, [true, false] | [false, true], Some(x)) => x.abs(),
+            _ => gap,
+        };
         let size = rows.iter().map(|row| row.iter().map(|x| x * x).sum::<f64>().sqrt());
         let size = size.fold(0.0, f64::max).max(f64::MIN_POSITIVE);
         findings.push(Finding {

@@ -85,10 +85,10 @@ pub(super) fn ratio_of_relative<S: Real, M: Metric<Scalar = S>>(
     }
 }
 
-/// The largest ratio of an error that may be rounding. Such a step is accepted. The next one is at most a little larger: if
-/// the ratio were 0, the controller would take a step of five times the size, which is rejected where the tolerance is
-/// near the rounding.
-const ROUNDING: f64 = 0.01;
+/// The largest ratio of an error that may be rounding. Such a step is accepted, and from order 4 to 12 its size is kept. If
+/// the ratio were 0, the next step would have five times the size. Where the tolerance is near the rounding, that step would
+/// be rejected.
+const ROUNDING: f64 = 0.1;
 
 /// The ratio of `weight` times the distance of `other` from the result `to` of a step. A distance that may be rounding
 /// counts as [`ROUNDING`] at most.

@@ -69,7 +69,7 @@ pub use rk::Rk;
 pub use rkmk::Rkmk;
 pub use simo_wong::SimoWong;
 pub use splitting::{MR2, MR4, Splitting};
-pub use streak::{Attempt, Attempts, Resize, Resized, Streak, Watch};
+pub use streak::{Attempt, Attempts, Resize, Streak, Watch};
 pub use tableau::Tableau;
 pub use taylor::{Taylor, Wide};
 

@@ -13,22 +13,11 @@ use crate::scalar::Real;
 use crate::space::Metric;
 use crate::tolerance::Tolerance;
 
-/// The next step after an accepted one, where its size is not kept.
+/// The size of the next step after an accepted one, where it is not kept.
 pub trait Resize {
-    /// The size of the step after one that ended at `end` with this ratio of error and tolerance; none ends the streak.
-    /// `kept` is the ratio of the step before, if that step kept its size.
-    fn after(&self, step: Step<f64>, end: f64, kept: Option<f64>, ratio: f64) -> Option<Resized>;
-    /// Called when the step was accepted, and the next one has the size that was told last.
-    fn accept(&self);
-}
-
-/// A step size.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Resized {
-    /// The size; negative when time runs backward.
-    pub size: f64,
-    /// True if it is kept where the next ratio says so.
-    pub may_be_kept: bool,
+    /// The size of the step after one that ended at `end` with this ratio of error and tolerance, negative when time runs
+    /// backward. None ends the streak.
+    fn after(&self, step: Step<f64>, end: f64, ratio: f64) -> Option<f64>;
 }
 
 /// The conditions under which the next step is attempted, too.
@@ -37,8 +26,8 @@ pub struct Resized {
 pub struct Streak<'a> {
     /// The largest number of attempts.
     pub most: u64,
-    /// The size of the first step.
-    pub first: Resized,
+    /// The size of the first step; negative when time runs backward.
+    pub size: f64,
     /// The least and the largest ratio of error and tolerance at which the size is kept.
     pub kept: [f64; 2],
     /// A size is kept if this time is at least two sizes away.
@@ -51,14 +40,8 @@ pub struct Streak<'a> {
 
 impl Streak<'_> {
     /// One attempt.
-    pub const ONE: Self = Streak {
-        most: 1,
-        first: Resized { size: 0.0, may_be_kept: false },
-        kept: [0.0; 2],
-        stop: 0.0,
-        time: None,
-        resize: None,
-    };
+    pub const ONE: Self =
+        Streak { most: 1, size: 0.0, kept: [0.0; 2], stop: 0.0, time: None, resize: None };
 
     /// True if the step size is kept after this ratio.
     #[inline(always)]
@@ -85,8 +68,8 @@ impl Streak<'_> {
 pub struct Attempts {
     /// The number of accepted steps.
     pub accepted: u64,
-    /// The ratio of the last accepted step, if it kept its size.
-    pub kept: Option<f64>,
+    /// True if the last attempt has the size of the step before it.
+    pub is_kept: bool,
     /// The last attempt.
     pub step: Step<f64>,
     /// Its end.
@@ -142,7 +125,7 @@ where
     let Attempt { tolerance, mut step, mut end, streak, points: [from, y, to], mut watch } =
         attempt;
     let (action, group) = (problem.action(), problem.group());
-    let (mut accepted, mut kept, mut now) = (0, None, streak.first);
+    let (mut accepted, mut is_kept, mut size) = (0, false, streak.size);
     // Points of a few numbers stay in registers from step to step. They are not in an array: numbers that are moved within
     // one may be loaded in pairs of which one half was just stored, and wait for it.
     let is_small = PointOf::<P>::IS_SMALL;
@@ -165,16 +148,15 @@ where
                 (true, false) => Err(not_finite("the error estimate")),
             }
         });
-        // The size of the next step, and the ratio of this one if it keeps its size.
+        // The size of the next step, and whether it is that of this one.
         let next = match ratio {
-            Ok(ratio) if streak.continues(accepted + 1, end, now.size) => {
-                if now.may_be_kept && streak.keeps(ratio) {
-                    streak.has_room(end, now.size).then_some((now, Some(ratio)))
-                } else {
+            Ok(ratio) if streak.continues(accepted + 1, end, size) => match streak.keeps(ratio) {
+                true => streak.has_room(end, size).then_some((size, true)),
+                false => {
                     let resize = streak.resize.filter(|_| ratio <= 1.0);
-                    resize.and_then(|sizes| Some((sizes.after(step, end, kept, ratio)?, None)))
+                    resize.and_then(|sizes| Some((sizes.after(step, end, ratio)?, false)))
                 }
-            }
+            },
             _ => None,
         };
         let next = next.filter(|_| match &mut watch {
@@ -183,11 +165,8 @@ where
             Some(watch) => watch([t, end], c),
         });
         let Some(next) = next else {
-            break Attempts { accepted, kept, step, end, size: now.size, ratio };
+            break Attempts { accepted, is_kept, step, end, size, ratio };
         };
-        if let (Some(sizes), None) = (streak.resize, next.1) {
-            sizes.accept();
-        }
         match is_small {
             true => {
                 a.assign(b);
@@ -199,8 +178,8 @@ where
             }
         }
         accepted += 1;
-        (now, kept) = next;
-        let next = end + now.size;
+        (size, is_kept) = next;
+        let next = end + size;
         (step, end) = (Step { n: n + 1, t: end, h: next - end }, next);
     };
     if let (Some(a), Some(b), Some(c)) = (&from_copy, &y_copy, &to_copy) {

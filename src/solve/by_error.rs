@@ -8,7 +8,7 @@ use super::stats::{RunError, Stats};
 use super::streak::{Reach, Run};
 use super::timeline::{Chooser, Pacer, Timeline, size_to};
 use crate::error::StepError;
-use crate::methods::{Attempts, Resize, Resized, Step, Streak};
+use crate::methods::{Attempts, Resize, Step, Streak};
 
 /// The number of rejections in a row that ends a run.
 const REJECTIONS_MAX: u32 = 60;
@@ -20,9 +20,7 @@ type Choice = (Option<f64>, Option<f64>, Controller);
 
 /// The choice of a step size within a streak. It stops where the step may not have the size that its error allows.
 struct Sizes {
-    controller: Cell<Controller>,
-    /// The controller after the step whose next size was told last.
-    told: Cell<Controller>,
+    controller: Controller,
     /// The least and the largest size of a step that was not kept.
     found: Cell<[f64; 2]>,
     stop: f64,
@@ -32,22 +30,21 @@ struct Sizes {
 
 impl Sizes {
     fn new(Chooser { controller, control, .. }: &Chooser, stop: f64) -> Self {
-        Sizes {
-            controller: Cell::new(*controller),
-            told: Cell::new(*controller),
-            found: Cell::new([f64::INFINITY, 0.0]),
-            stop,
-            limits: [control.min_step, control.max_step],
-        }
+        let found = Cell::new([f64::INFINITY, 0.0]);
+        let limits = [control.min_step, control.max_step];
+        Sizes { controller: *controller, found, stop, limits }
+    }
+
+    /// Notes the size of an accepted step.
+    fn note(&self, h: f64) {
+        let [least, largest] = self.found.get();
+        self.found.set([least.min(h.abs()), largest.max(h.abs())]);
     }
 }
 
 impl Resize for Sizes {
-    fn after(&self, step: Step<f64>, end: f64, kept: Option<f64>, ratio: f64) -> Option<Resized> {
-        let mut controller = self.controller.get();
-        if let Some(kept) = kept {
-            controller.accept(kept);
-        }
+    fn after(&self, step: Step<f64>, end: f64, ratio: f64) -> Option<f64> {
+        let mut controller = self.controller;
         let size = (end - step.t).abs();
         let [least, largest] = self.limits;
         let next = (size * controller.accept(ratio)).max(least);
@@ -56,13 +53,8 @@ impl Resize for Sizes {
         if !is_free || end + size == end {
             return None;
         }
-        let [least, largest] = self.found.get();
-        self.found.set([least.min(step.h.abs()), largest.max(step.h.abs())]);
-        self.told.set(controller);
-        Some(Resized { size, may_be_kept: controller.keeps() })
-    }
-    fn accept(&self) {
-        self.controller.set(self.told.get());
+        self.note(step.h);
+        Some(size)
     }
 }
 
@@ -118,7 +110,8 @@ impl Timeline {
             let mut size = size;
             if tried.accepted > 0 {
                 h = tried.size.abs();
-                *before = self.went_on(h, &tried, &sizes);
+                self.went_on(&tried, &sizes);
+                *before = (Some(h), None, sizes.controller);
                 size = (tried.end - self.t).abs();
             }
             let Attempts { step, end, ratio, .. } = tried;
@@ -201,29 +194,20 @@ impl Timeline {
         let Stats { accepted, rejected, .. } = self.stats;
         let most = steps.min(self.cadence.next).saturating_sub(accepted);
         let most = most.min(control.max_steps - accepted - rejected).max(1);
-        let first = Resized { size, may_be_kept: controller.keeps() };
-        Streak { most, first, kept: controller.kept, stop, time, resize: Some(sizes) }
+        Streak { most, size, kept: controller.kept, stop, time, resize: Some(sizes) }
     }
 
-    /// Records the accepted steps of a streak, but for the last attempt, whose size is h. Returns the choice of the step
-    /// size before that attempt.
-    fn went_on(&mut self, h: f64, tried: &Attempts, sizes: &Sizes) -> Choice {
+    /// Records the accepted steps of a streak, but for the last attempt.
+    fn went_on(&mut self, tried: &Attempts, sizes: &Sizes) {
         self.t = tried.step.t;
-        let Stats { accepted, smallest_step, largest_step, .. } = &mut self.stats;
-        *accepted += tried.accepted;
-        let [mut least, mut largest] = sizes.found.get();
-        let mut controller = sizes.controller.get();
-        if let Some(kept) = tried.kept {
-            let size = tried.step.h.abs();
-            (least, largest) = (least.min(size), largest.max(size));
-            controller.accept(kept);
+        if tried.is_kept {
+            sizes.note(tried.step.h);
         }
+        let Stats { accepted, smallest_step, largest_step, .. } = &mut self.stats;
+        let [least, largest] = sizes.found.get();
+        *accepted += tried.accepted;
         *smallest_step = smallest_step.min(least);
         *largest_step = largest_step.max(largest);
-        if let Pacer::ByError(chooser) = &mut self.pacer {
-            chooser.controller = controller;
-        }
-        (Some(h), None, controller)
     }
 
     /// A step of a method that is exact at any size.
@@ -245,7 +229,8 @@ impl Timeline {
     /// much f changes.
     fn first_step(&mut self, points: &mut dyn AnyPoints, stop: f64) -> f64 {
         let Pacer::ByError(chooser) = &self.pacer else { return 0.0 };
-        let (k, tolerance) = (chooser.controller.k, chooser.control.tolerance.of_unit_size());
+        let (controller, tolerance) =
+            (chooser.controller, chooser.control.tolerance.of_unit_size());
         let span = (stop - self.t).abs();
         let d1 = points.rate(self.t);
         self.stats.evaluations = self.stats.evaluations.map(|n| n + 1);
@@ -270,7 +255,7 @@ impl Timeline {
         self.stats.evaluations = self.stats.evaluations.map(|n| n + 1);
         // Rates: f itself, and the root of its derivative.
         let rate = d1.max((change / h0).sqrt());
-        let h1 = (0.01 * tolerance).powf(1.0 / k) / rate;
+        let h1 = controller.first_step(rate, tolerance);
         match h1.is_finite() {
             true => h1.min(100.0 * h0),
             false => h0,

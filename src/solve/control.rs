@@ -1,13 +1,14 @@
-//! Adaptive step size: tolerances, limits, and a PI controller.
+//! Adaptive step size: tolerances, limits, and the choice of the next size.
 //!
-//! The next step is h·min(5, max(1/5, 0.9·r^(−0.7/k)·r₋^(0.4/k))), where r is the ratio of the error to
-//! the tolerance, k the order of the estimate + 1, and r₋ the r of the step before (Hairer, Nørsett, Wanner II, IV.2;
-//! Gustafsson's PI controller). The step after a rejected one does not grow.
+//! Let r be the ratio of the error to the tolerance of a step of size h, and k the order of the estimate + 1. The largest
+//! size that the tolerance allows is about ĥ = h·r^(−1/k). The step size is kept while it is between 0.6ĥ and 0.85ĥ.
+//! Otherwise the next step has 0.7ĥ. If that is more than h, it is h·(0.7ĥ/h)^0.7: where a step is so long that its error
+//! grows faster than by its order, a size that grew at once would be rejected again and again. A step grows and shrinks by
+//! a factor of 5 at most. A step with r > 1 is rejected. The next attempt has 0.7ĥ, at most 0.9h, and the step after it
+//! does not grow.
 //!
-//! Where r stays at 0.9^(k/0.3), the step size does too. It is kept while both r and r₋ are between
-//! 1/3 and 1.4 of that: with k = 5 the step size would grow by 17 % or shrink by 5 % at most. A larger error is not kept,
-//! because it costs accuracy. A step of the same size needs no powers, and the processor begins it before it knows the
-//! error of the step before ([`Streak`](crate::methods::Streak)).
+//! A step of the same size needs no power, and the processor begins it before it knows the error of the step before
+//! ([`Streak`](crate::methods::Streak)). `docs/performance.md` has the measurements behind these numbers.
 
 use crate::error::Error;
 use crate::tolerance::{Rule, Tolerance};
@@ -114,13 +115,11 @@ impl From<Tolerance> for StepControl {
     }
 }
 
-/// The PI controller: the next step size from r = error/tolerance of a step.
+/// The next step size, from r = error/tolerance of a step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Controller {
     /// The order of the estimate + 1.
-    pub(super) k: f64,
-    /// r of the last accepted step.
-    pub(super) last: f64,
+    k: f64,
     /// True if the next step must not be larger than this one.
     pub(super) hold: bool,
     /// The least and the largest ratio at which the step size is kept.
@@ -129,23 +128,24 @@ pub(super) struct Controller {
 
 /// The largest factor by which a step grows; 1 over it is the smallest factor by which it shrinks.
 const GROWTH_MAX: f64 = 5.0;
-const SAFETY: f64 = 0.9;
-/// The powers of r and r₋, times k.
-const POWERS: [f64; 2] = [0.7, 0.4];
-/// The step size is kept where the ratio is between these multiples of the one that keeps it.
-const NEAR: [f64; 2] = [1.0 / 3.0, 1.4];
+/// A step grows by this power of the factor that its error allows.
+const GROWTH_POWER: f64 = 0.7;
+/// The size of the next step, in units of the largest size that the tolerance allows.
+const GOAL: f64 = 0.7;
+/// The step size is kept between these, in the same units.
+const KEPT: [f64; 2] = [0.6, 0.85];
+/// The largest factor of an attempt after a rejected one.
+const RETRY_MAX: f64 = 0.9;
 
 impl Controller {
     pub(super) fn new(error_order: usize) -> Self {
         let k = error_order as f64 + 1.0;
-        let [power, memory] = POWERS;
-        let goal = SAFETY.powf(k / (power - memory));
-        Controller { k, last: 1.0, hold: false, kept: NEAR.map(|near| near * goal) }
+        Controller { k, hold: false, kept: KEPT.map(|size| size.powf(k)) }
     }
 
     /// The controller at a start: it knows no step.
     pub(super) fn anew(self) -> Self {
-        Controller { last: 1.0, hold: false, ..self }
+        Controller { hold: false, ..self }
     }
 
     /// True if steps of any size have no error.
@@ -153,40 +153,36 @@ impl Controller {
         self.k >= usize::MAX as f64
     }
 
-    /// True if the ratio is near that at which the step size stays.
-    fn is_near(&self, ratio: f64) -> bool {
-        let [least, most] = self.kept;
-        least <= ratio && ratio <= most
-    }
-
-    /// True if the step size is kept, unless the next ratio is far away.
-    pub(super) fn keeps(&self) -> bool {
-        self.is_near(self.last)
+    /// The largest size that the tolerance allows, as a multiple of the size of a step.
+    fn allowed(&self, ratio: f64) -> f64 {
+        ratio.max(f64::MIN_POSITIVE).powf(-1.0 / self.k)
     }
 
     /// The factor of the next step after an accepted one.
     pub(super) fn accept(&mut self, ratio: f64) -> f64 {
-        if self.is_near(self.last) && self.is_near(ratio) {
-            self.last = ratio;
-            self.hold = false;
-            return 1.0;
-        }
-        let r = ratio.max(1e-10); // an error of 0 says "grow"
-        // One exponential for both powers.
-        let [power, memory] = POWERS;
-        let factor = SAFETY * ((memory * self.last.ln() - power * r.ln()) / self.k).exp();
-        let cap = if self.hold { 1.0 } else { GROWTH_MAX };
-        self.last = r.max(1e-4);
+        let most = if self.hold { 1.0 } else { GROWTH_MAX };
         self.hold = false;
-        factor.clamp(1.0 / GROWTH_MAX, cap)
+        let [least_kept, most_kept] = self.kept;
+        match least_kept <= ratio && ratio <= most_kept {
+            true => 1.0,
+            false => match GOAL * self.allowed(ratio) {
+                factor if factor > 1.0 => factor.powf(GROWTH_POWER).min(most),
+                factor => factor.max(1.0 / GROWTH_MAX),
+            },
+        }
     }
 
     /// The factor of the next attempt; `None` for a step that failed.
     pub(super) fn reject(&mut self, ratio: Option<f64>) -> f64 {
         self.hold = true;
         match ratio {
-            Some(r) => (SAFETY * r.powf(-1.0 / self.k)).clamp(1.0 / GROWTH_MAX, SAFETY),
+            Some(ratio) => (GOAL * self.allowed(ratio)).clamp(1.0 / GROWTH_MAX, RETRY_MAX),
             None => 0.5,
         }
+    }
+
+    /// The first step for a solution whose derivative of order k is about `rate` to the power of k.
+    pub(super) fn first_step(&self, rate: f64, tolerance: f64) -> f64 {
+        (0.01 * tolerance).powf(1.0 / self.k) / rate
     }
 }

@@ -350,7 +350,7 @@ impl<'a, P: Problem, M: Method<P>> Points<'a, P, M> {
             }
             None => {
                 let ratio = Err(StepError::NotFinite { what: "the error estimate" });
-                Attempts { accepted: 0, kept: None, step, end, size: step.h, ratio }
+                Attempts { accepted: 0, is_kept: false, step, end, size: step.h, ratio }
             }
         }
     }

@@ -184,7 +184,6 @@ impl Timeline {
                 each(done);
             }
             Pacer::ByError(chooser) => {
-                number(each, &mut chooser.controller.last);
                 flag(each, &mut chooser.controller.hold);
                 option(each, &mut chooser.h, number);
                 option(each, &mut chooser.wall, number);

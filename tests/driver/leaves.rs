@@ -43,12 +43,13 @@ fn is_seen<P: Problem<Group: LieAlgebra<Scalar = f64>>>(
     Exp: lieflow::maps::CoordinateMap<P::Group>,
 {
     let method = Rkmk::new(DOPRI5, Exp);
-    for run in runs(leaving, &method, y0) {
+    // Adaptive steps may be so few that the first look at f is that at the end.
+    for (run, latest) in runs(leaving, &method, y0).into_iter().zip([2.0, 3.0]) {
         match run {
             Err(RunError::LeftManifold {
                 t,
                 source: Error::NotInAlgebra { arg: "f", .. } | Error::Trace { arg: "f", .. },
-            }) => assert!(t > LEAVES && t < 3.0, "{name}: seen at t = {t}"),
+            }) => assert!(t > LEAVES && t <= latest, "{name}: seen at t = {t}"),
             run => panic!("{name}: {run:?}"),
         }
     }

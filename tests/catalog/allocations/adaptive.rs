@@ -37,7 +37,7 @@ fn adaptive_runs() {
                     (stats.expect("a run").accepted, counting::total() - before)
                 };
                 run(0.1);
-                let (short, long) = (run(0.5), run(5.0));
+                let (short, long) = (run(0.5), run(8.0));
                 assert!(long.0 > 2 * short.0);
                 assert_eq!(short.1, long.1, "{} at n = {n}", stringify!($method));
             )*};

@@ -40,7 +40,7 @@ fn events_and_output() {
                 (done.stats.accepted, count)
             };
             run(0.1);
-            let (short, long) = (run(0.5), run(5.0));
+            let (short, long) = (run(0.5), run(8.0));
             assert!(long.0 > 2 * short.0);
             assert_eq!(short.1, long.1, "{} {adaptive}", stringify!($method));
         })*};

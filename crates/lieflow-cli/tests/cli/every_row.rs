@@ -69,12 +69,12 @@ fn every_row_of_a_free_body_is_compared_with_the_exact_motion() {
     let folder = Folder::new();
     let (told, summary) = run(&folder, FLIPS, &[]);
     for what in [
-        "\n  event flip: 5 times, first at t = 6.885703083904",
-        ", times right to about 2.",
+        "\n  event flip: 5 times, first at t = 6.88570308390",
+        ", times right to about 3.",
         "\n  error, against the exact motion: momentum_body 1.",
         "e-10 of its size at t = 52.85, at the end ",
         "e-11; attitude ",
-        "e-9 degrees at t = 52.85, at the end ",
+        "e-8 degrees at t = 52.85, at the end ",
         "\n  about 9 digits are right\n",
     ] {
         assert!(told.contains(what), "{what}: {told}");
@@ -269,7 +269,7 @@ fn the_page_says_what_the_terminal_says() {
     for what in [
         "In the worst row about 9 digits are right. The error, against the exact motion: momentum body 1.",
         " of its size at t = 52.85, at the end ",
-        "times right to about 2.",
+        "times right to about 3.",
     ] {
         assert!(page.contains(what), "{what}");
     }

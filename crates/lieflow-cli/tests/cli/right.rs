@@ -256,7 +256,7 @@ fn a_pulse_that_all_steps_pass_over_is_told() {
     for (rtol, width, middle) in [
         ("rtol = 1e-6", 0.002, 51.337),
         ("rtol = 1e-9", 0.002, 33.33),
-        ("rtol = 1e-9", 0.01, 51.337),
+        ("rtol = 1e-9", 0.01, 47.77),
         ("", 0.002, 33.33),
     ] {
         let case = format!("{rtol}, {width} s at {middle}");
