@@ -504,13 +504,17 @@ fn adaptive(
     off: &mut Off,
 ) -> Result<Vec<Finding>, String> {
     let Reference { t_span, times, rows, floor } = reference;
-    // A number of the state passes its value at a row, fast and on a curve.
+    // A number of the state passes its value at a row, fast, on a curve, and not beside a turning point.
     let passes = (1..rows.len() - 1).flat_map(|i| {
         let numbers = rows[i - 1].iter().zip(&rows[i]).zip(&rows[i + 1]).enumerate();
-        numbers.map(move |(place, ((a, b), c))| (i, place, (c - a).abs(), (a - 2.0 * b + c).abs()))
+        numbers.map(move |(place, ((a, b), c))| {
+            let (before, after) = (b - a, c - b);
+            let least = if before * after > 0.0 { before.abs().min(after.abs()) } else { 0.0 };
+            (i, place, (c - a).abs(), least * (after - before).abs())
+        })
     });
-    let passes = passes.filter(|(.., change, curve)| change * curve > 0.0);
-    let passed = passes.max_by(|a, b| (a.2 * a.3).total_cmp(&(b.2 * b.3)));
+    let passes = passes.filter(|(.., rank)| *rank > 0.0);
+    let passed = passes.max_by(|a, b| a.3.total_cmp(&b.3));
     let event = passed.map(|(i, place, ..)| (place, rows[i][place]));
     let trial = Trial {
         event,
@@ -551,14 +555,12 @@ fn adaptive(
     if let Some((i, place, change, _)) = passed {
         let speed = change / (times[i + 1] - times[i - 1]).abs();
         let gaps = record.events.iter().map(|t| (t - times[i]).abs());
-        let gap = gaps.fold(f64::INFINITY, f64::min) * speed;
-        // A coarse run may stay on one side of the value. Then it is as far away as its number at that time.
-        let beside = record.rows.iter().map(|row| row[place] - rows[i][place]);
-        let sides = beside.clone().fold([false; 2], |[b, a], x| [b || x <= 0.0, a || x >= 0.0]);
-        let gap = match (record.events.is_empty(), sides, beside.clone().nth(i)) {
-            (true, [true, false] | [false, true], Some(x)) => x.abs(),
-            _ => gap,
-        };
+        // A run that never passes the value has an error of at least the way from there to the nearer end of the values.
+        let ends = rows.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], row| {
+            [low.min(row[place]), high.max(row[place])]
+        });
+        let beyond = (rows[i][place] - ends[0]).min(ends[1] - rows[i][place]);
+        let gap = gaps.reduce(f64::min).map_or(beyond, |gap| gap * speed);
         let size = rows.iter().map(|row| row.iter().map(|x| x * x).sum::<f64>().sqrt());
         let size = size.fold(0.0, f64::max).max(f64::MIN_POSITIVE);
         findings.push(Finding {

@@ -233,6 +233,18 @@ fn after_a_rejection() {
     assert!(no_growth && closing.len() > 5, "before {}: {closing:?}", t + h);
 }
 
+/// The largest step was kept from step to step until an attempt of its size was rejected.
+#[test]
+fn a_size_that_is_kept_is_counted() {
+    let problem = moving();
+    let method = told(4, |t, h| Some(if t >= 3.0 && h > 0.9 { 3.0 } else { f64::powi(0.7, 5) }));
+    let solve = Solve::new(&problem, &method, [0.0, 100.0]).tolerances(1e-6, 1e-6).first_step(1.0);
+    let stats = solve.run(V::zeros()).expect("a run").stats;
+    assert_eq!(stats.rejected, 1);
+    assert!((stats.largest_step - 1.0).abs() < 1e-12, "{}", stats.largest_step);
+    assert!(stats.smallest_step < 0.57, "{}", stats.smallest_step);
+}
+
 /// What never succeeds ends: 60 rejections in a row, or fewer where t has no room.
 #[test]
 fn what_never_succeeds() {

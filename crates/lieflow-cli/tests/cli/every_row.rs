@@ -69,7 +69,7 @@ fn every_row_of_a_free_body_is_compared_with_the_exact_motion() {
     let folder = Folder::new();
     let (told, summary) = run(&folder, FLIPS, &[]);
     for what in [
-        "\n  event flip: 5 times, first at t = 6.88570308390",
+        "\n  event flip: 5 times, first at t = 6.885703083905",
         ", times right to about 3.",
         "\n  error, against the exact motion: momentum_body 1.",
         "e-10 of its size at t = 52.85, at the end ",

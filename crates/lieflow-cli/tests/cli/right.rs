@@ -267,13 +267,16 @@ fn a_pulse_that_all_steps_pass_over_is_told() {
         assert!(!told.contains("WARNING: "), "{case}: {told}");
         assert!(summary["accuracy"]["digits"].as_u64().unwrap() >= 6, "{case}: {told}");
     }
-    // The tolerance finds a longer one.
-    for (rtol, width, found_by) in
-        [("rtol = 1e-9", 0.1, "tenth-tolerance"), ("", 0.01, "tenfold-tolerance")]
-    {
+    // The tolerance finds a longer one, and one in which a step happens to end.
+    for (rtol, width, found_by) in [
+        ("rtol = 1e-9", 0.1, "tenth-tolerance"),
+        ("rtol = 1e-9", 0.01, "tenth-tolerance"),
+        ("", 0.01, "tenfold-tolerance"),
+    ] {
         let (told, summary) = run(rtol, width, 51.337, "");
         assert!(!told.contains("WARNING: "), "{told}");
         assert_eq!(summary["accuracy"]["found_by"], found_by);
+        assert!(summary["accuracy"]["digits"].as_u64().unwrap() >= 6, "{told}");
     }
 }
 
