@@ -29,7 +29,7 @@ pub(crate) enum Recipe {
     Rk,
     /// Classical Runge–Kutta with a projection after each step.
     ProjectionMethod(Projection),
-    OneBracket(OneBracketTableau<6>),
+    OneBracket(OneBracketTableau<7>),
     CommutatorFree(ProductTableau<5>),
     LowStorage(TwoN<13>),
     Magnus4,

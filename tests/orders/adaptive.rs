@@ -266,6 +266,50 @@ fn not_a_number() {
     }
 }
 
+/// f of t alone that commutes with itself: a step is a rule for an integral. Two results that are one rule there would tell
+/// nothing of their error.
+#[test]
+fn an_integral_meets_its_tolerance() {
+    let turning = Flow::of_time(So3::new(), Linear, |t: f64, v: &mut Vector3<f64>| {
+        *v = Vector3::z() * (2.0 * (3.0 * t).cos() + (0.3 * t * t).exp());
+    });
+    // ∫ exp(0.3 t²) over [0, 2], by Simpson's rule on many intervals.
+    let part = |i: i32| (0.3 * (f64::from(i) * 1e-3).powi(2)).exp();
+    let sum: f64 = (0..1000).map(|i| part(2 * i) + 4.0 * part(2 * i + 1) + part(2 * i + 2)).sum();
+    let angle = 2.0 / 3.0 * 6.0f64.sin() + sum * 1e-3 / 3.0;
+    let exact = turn(&(Vector3::z() * angle)) * Vector3::x();
+    macro_rules! check {
+        ($($method:expr),* $(,)?) => {$(
+            for tol in [1e-4, 1e-6, 1e-8] {
+                let tols = control(tol, tol);
+                let (y, stats) =
+                    go(&turning, &$method, [0.0, 2.0], &tols, &Vector3::x()).expect("a run");
+                let error = (y - exact).norm();
+                println!("{:28} {tol:e}: {error:.1e}, {} steps", stringify!($method), stats.accepted);
+                assert!(error < 10.0 * tol, "{} at {tol}: {error:e}, {stats:?}", stringify!($method));
+            }
+        )*};
+    }
+    check!(
+        Rkmk::new(BS3, Exp),
+        Rkmk::new(RKF45, Exp),
+        Rkmk::new(DOPRI5, Exp),
+        Rkmk::new(DOPRI5, Cay),
+        Rkmk::new(VERNER6, Exp),
+        Rkmk::new(DOP853, Exp),
+        Rk(BS3),
+        Rk(RKF45),
+        Rk(DOPRI5),
+        Rk(VERNER6),
+        Rk(DOP853),
+        CommutatorFree(CF43),
+        LowStorage(LS32),
+        OneBracket(MAGNUS43),
+        Doubling(CommutatorFree(CF4)),
+        Doubling(Magnus6),
+    );
+}
+
 /// What is counted is what the field sees, but for the one evaluation that asks whether f is in 𝔤.
 #[test]
 fn evaluations_are_counted() {

@@ -40,8 +40,9 @@ fn cf43_embedded() -> ProductTableau<5> {
     ProductTableau { order, update, update_stages: 5, embedded: None, ..CF43 }
 }
 
-fn magnus43_embedded() -> OneBracketTableau<6> {
-    OneBracketTableau { order: 3, update: MAGNUS43.stages[5], embedded: None, ..MAGNUS43 }
+fn magnus43_embedded() -> OneBracketTableau<7> {
+    let (order, update) = MAGNUS43.embedded.expect("a pair");
+    OneBracketTableau { order, update, embedded: None, ..MAGNUS43 }
 }
 
 #[test]

@@ -178,13 +178,17 @@ const FIELD: &[MethodInfo] = &[
         "Munthe-Kaas, Owren 1999",
         Recipe::OneBracket(RKMK4_2C.padded()),
     ),
-    in_exp(
-        Family::Magnus,
+    plain(
+        (Family::Magnus, Needs::Field),
         "magnus43",
         4,
         "Magnus method for nonlinear equations, pair 4(3)",
-        &[times(6, Field), times(6, Exp), times(3, Bracket)],
-        "Casas, Iserles 2006",
+        KEEPS_GROUP,
+        Cost {
+            other_case: OtherCase::WithError(&[times(7, Field), times(7, Exp), times(4, Bracket)]),
+            ..Cost::of(&[times(6, Field), times(6, Exp), times(3, Bracket)])
+        },
+        "Casas, Iserles 2006, with another estimate",
         Recipe::OneBracket(MAGNUS43),
     ),
     in_exp(
