@@ -98,7 +98,7 @@ pub(super) struct EventRule {
     pub(super) stop_after: Option<u64>,
     /// True if the event changes the state.
     pub(super) changes: bool,
-    pub(super) points: Option<u32>,
+    pub(super) points: Points,
     /// True if the steps of the run are long.
     has_long_steps: bool,
     pub(super) seen: Seen,
@@ -112,6 +112,17 @@ impl<Y> fmt::Debug for Event<'_, Y> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Event").field("name", &self.rule.name).finish_non_exhaustive()
     }
+}
+
+/// The number of points within a step where g is evaluated.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Points {
+    /// [`POINTS`] in steps that may have two zeros; in long steps as many as a polynomial needs.
+    AsNeeded,
+    /// So many in each step.
+    Each(u32),
+    /// As many as this says of the step size and of g at the two ends.
+    By(fn(f64, [f64; 2]) -> u32),
 }
 
 /// The values of g up to the last point.
@@ -153,7 +164,7 @@ impl<'a, Y> Event<'a, Y> {
             direction: Direction::Both,
             stop_after: None,
             changes: false,
-            points: None,
+            points: Points::AsNeeded,
             has_long_steps: false,
             seen: Seen::default(),
             count: 0,
@@ -197,7 +208,16 @@ impl<'a, Y> Event<'a, Y> {
     /// at one end is at most twice the change of the slope of g over this step and the one before, times the step size.
     /// Methods of order 10 and more look for all zeros without this, see `docs/driver.md`.
     pub fn points(mut self, points: u32) -> Self {
-        self.rule.points = Some(points);
+        self.rule.points = Points::Each(points);
+        self
+    }
+    /// Evaluates g at `points(h, [g₀, g₁])` points within each step, at most 100 000. h > 0 is the step size, g₀ and g₁ are
+    /// the values of g at the start and at the end of the step.
+    ///
+    /// Example: g > 0 is a rate that the state knows, and the points are so many that h · g / points stays below a bound. Such
+    /// an event has no zeros; it sees the state often enough.
+    pub fn points_by(mut self, points: fn(f64, [f64; 2]) -> u32) -> Self {
+        self.rule.points = Points::By(points);
         self
     }
     /// The name.
@@ -211,7 +231,7 @@ impl EventRule {
     #[inline(always)]
     fn search(&self, span: [f64; 2], last: f64, first_step: bool) -> Search {
         let EventRule { direction, points, has_long_steps, seen, .. } = *self;
-        let is_long = has_long_steps && points.is_none();
+        let is_long = has_long_steps && matches!(points, Points::AsNeeded);
         Search { direction, points, is_long, seen, first_step, span, last }
     }
 
@@ -267,8 +287,9 @@ impl Events {
     /// True if each step needs a search, whatever the values at its end.
     pub(super) fn search_always(&self) -> bool {
         let always = |event: &EventRule| match event.points {
-            Some(points) => points > 0,
-            None => event.has_long_steps,
+            Points::Each(points) => points > 0,
+            Points::AsNeeded => event.has_long_steps,
+            Points::By(_) => false,
         };
         self.all.iter().any(always)
     }
@@ -355,7 +376,7 @@ impl Events {
 /// The search for the zeros of one event in a step. It knows numbers only, so it is compiled once.
 struct Search {
     direction: Direction,
-    points: Option<u32>,
+    points: Points,
     /// Is g looked at more closely, because the step is long?
     is_long: bool,
     seen: Seen,
@@ -380,9 +401,10 @@ impl Search {
     fn points(&self, first: f64) -> u32 {
         let Search { seen, span: [start, end], last, .. } = *self;
         match (self.points, seen.before) {
-            (Some(points), _) => points,
-            (None, None) => POINTS,
-            (None, Some([before, length])) => {
+            (Points::Each(points), _) => points,
+            (Points::By(points), _) => points((end - start).abs(), [first, last]).min(POINTS_MAX),
+            (Points::AsNeeded, None) => POINTS,
+            (Points::AsNeeded, Some([before, length])) => {
                 // Times the length of the step before: a division takes as long as the rest.
                 let size = (end - start).abs();
                 let bend = (last - seen.value) * length - (seen.value - before) * size;

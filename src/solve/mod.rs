@@ -59,7 +59,7 @@ use crate::problems::{Invariants, PointOf, Problem, ScalarOf};
 use crate::space::Numbers;
 use crate::tolerance::Rule;
 use drive::Checkpoints;
-use events::{EventFunctions, EventRule, POINTS_MAX};
+use events::{EventFunctions, EventRule, POINTS_MAX, Points};
 use held::Held;
 use interpolant::Listing;
 use output::{Keep, Observe, Output, SeeEnd, Watch};
@@ -229,7 +229,9 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
             let arg = format!("stop_after of event `{}`", event.name());
             self.settings.wrong.get_or_insert(Error::out_of_range(arg, 0.0, "at least 1"));
         }
-        if let Some(points) = event.rule.points.filter(|points| *points > POINTS_MAX) {
+        if let Points::Each(points) = event.rule.points
+            && points > POINTS_MAX
+        {
             let arg = format!("points of event `{}`", event.name());
             let expected = format!("at most {POINTS_MAX} in each step");
             let error = Error::out_of_range(arg, f64::from(points), expected);

@@ -17,7 +17,6 @@ use crate::error::CliError;
 use crate::output::{self, Drawn, Drift, MethodSummary, RunState, SUMMARY, Summary};
 use lieflow_model::problem::Plan;
 use lieflow_model::scene::{Scene, SceneEvent};
-use lieflow_model::schema::{Observable, Schema};
 
 /// How often the state of a run is saved.
 const SAVED_EVERY: Duration = Duration::from_secs(1);
@@ -268,7 +267,6 @@ pub fn run_scene(
     let drift = watch.drift(&kept.watched, done.taken.steps)?;
     let mut warnings = scene.problem.warnings().to_vec();
     warnings.extend(one_long_step(scene));
-    warnings.extend(lost_turns(scene, model.schema()));
     let by_events = kept.between.iter().zip(&scene.events).zip(&kept.seen);
     warnings
         .extend(by_events.clone().filter_map(|((between, _), seen)| between.warning(seen.count)));
@@ -461,20 +459,6 @@ fn one_long_step(scene: &Scene) -> Option<String> {
 /// The largest size of a number; 0 if there is none.
 fn largest(numbers: &[f64]) -> f64 {
     numbers.iter().fold(0.0, |most, x| most.max(x.abs()))
-}
-
-/// Equal steps that are too long to count the half turns of angles.
-fn lost_turns(scene: &Scene, schema: &Schema) -> Vec<String> {
-    let h = scene.grid.h().abs().min(length(scene));
-    let lost = |angles: &Observable| {
-        let gap = angles.branch.longest_gap().filter(|gap| scene.adaptive.is_none() && h > *gap)?;
-        Some(format!(
-            "{} may have lost half turns: they are followed from step to step, which is sure up to dt = {}",
-            angles.name,
-            output::rough(gap)
-        ))
-    };
-    schema.iter().filter_map(lost).collect()
 }
 
 fn drift_of_rows((name, drift): (&String, &Drift)) -> String {

@@ -213,23 +213,8 @@ fn a_step_that_is_longer_than_the_span_is_told() {
 }
 
 #[test]
-fn steps_that_pass_poles_or_ends_of_magnets_are_told() {
+fn steps_that_pass_ends_of_magnets_are_told() {
     let folder = Folder::new();
-    let riccati = |time: &str| {
-        folder.write(
-            "poles.toml",
-            &format!(
-                "[problem]\nkind = \"riccati\"\nc = [[1]]\nb = [[-1]]\np = [[0]]\n\
-                 [method]\nname = \"magnus4\"\n[time]\nt_span = [0, 20]\n{time}"
-            ),
-        );
-        folder.lieflow(&["run", "poles.toml", "--no-page", "--out", "out"]).ok()
-    };
-    let lost = "WARNING: angles may have lost half turns: they are followed from step to step, which is sure up to dt = 1.4";
-    assert!(riccati("dt = 2").contains(lost));
-    assert!(
-        !riccati("dt = 1").contains("half turns") && !riccati("rtol = 1e-9").contains("half turns")
-    );
     // 1.3 long magnets and steps of 0.25.
     let line = |more: &str| {
         folder.write(

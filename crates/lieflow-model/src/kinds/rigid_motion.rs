@@ -129,6 +129,10 @@ impl Oriented for Motion {
     fn orientation(&self, (g, _): &Pose) -> Orientation {
         Orientation::Matrix(*g)
     }
+    fn turn_rate(&self, t: f64, y: &Pose) -> f64 {
+        let at = variables(t, y);
+        Vector3::from_fn(|i, _| self.twist[i].value(&at)).norm()
+    }
 }
 
 impl System for Motion {

@@ -77,6 +77,8 @@ pub(crate) struct Quantity<S: System> {
     pub(crate) numbers: fn(&S) -> Numbers,
     /// The choice that makes the columns of a run continuous.
     pub(crate) branch: fn(&S) -> Branch,
+    /// How fast the state turns, in radians per time: the values of points that are half a turn apart may lose turns.
+    pub(crate) turn_rate: fn(&S, f64, &PointOf<S>) -> f64,
     law: Keepers<S>,
     /// Is it a distance from M, which the exact motion keeps at 0?
     pub(crate) is_distance: bool,
@@ -109,6 +111,7 @@ impl<S: System> Quantity<S> {
             parts: None,
             numbers: |_| Numbers::Real,
             branch: |_| Branch::Single,
+            turn_rate: |_, _, _| 0.0,
             law: Keepers::None,
             is_distance: false,
             terms: None,
@@ -199,6 +202,11 @@ impl<S: System> Quantity<S> {
     /// The values are known up to a choice.
     pub(crate) const fn continuous_by(self, branch: fn(&S) -> Branch) -> Self {
         Quantity { branch, ..self }
+    }
+
+    /// The state turns this fast at (t, y).
+    pub(crate) const fn turning_by(self, turn_rate: fn(&S, f64, &PointOf<S>) -> f64) -> Self {
+        Quantity { turn_rate, ..self }
     }
 
     /// Every problem of the kind conserves the quantity.

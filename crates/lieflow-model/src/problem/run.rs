@@ -10,8 +10,7 @@ use lieflow::catalog::{MethodSpec, MethodsByName};
 use lieflow::groups::LieAlgebra;
 use lieflow::methods::{AnyMethod, Facts, Method, Within};
 use lieflow::names::same;
-use lieflow::problems::{PointOf, ScalarOf};
-use lieflow::scalar::Real;
+use lieflow::problems::PointOf;
 use lieflow::solve::{Interpolant, Interrupted, LONG_STEPS, Next, Solution, Status};
 use lieflow::space::Numbers;
 use lieflow::{Action, Direction, Error, Event, RunError, SaveAt, Solve, Stats};
@@ -292,6 +291,8 @@ pub type SharedRowOf<P> = dyn Fn(f64, &PointOf<P>, &mut Vec<f64>) + Send + Sync;
 pub(crate) struct RowsOf<'a, P: Runnable> {
     pub(crate) schema: &'a Schema,
     pub(crate) row_of: &'a RowOf<'a, P>,
+    /// How fast the state turns at (t, y), in radians per time.
+    pub(crate) turn_rate: &'a dyn Fn(f64, &PointOf<P>) -> f64,
     pub(crate) shared: &'a dyn Fn() -> Box<SharedRowOf<P>>,
 }
 
@@ -337,35 +338,74 @@ pub(crate) fn curve_by<P: Runnable>(
     Ok(Box::new(CurveOf { points, row_of }))
 }
 
-/// The least points within a long step, in which a body turns by some radians.
-const WITHIN_LONG: f64 = 3.0;
-/// Points within a step for each radian that the start turns in it: later the motion may be faster.
-const FOR_EACH_RADIAN: f64 = 3.0;
-/// The most points within a step.
-const WITHIN_MOST: f64 = 100_000.0;
+/// The points of a run at which choices are followed: so many that the state turns by half a radian between two of them.
+#[derive(Clone, Copy, Debug)]
+struct Followed {
+    /// The time of the end of a step.
+    t: f64,
+    /// How fast the state turns there.
+    rate: f64,
+    /// By how much it turned since it was followed.
+    turned: f64,
+}
 
-/// The points within a step at which choices are followed. In short steps there are none.
-fn points_within<P: Runnable>(
-    problem: &Arc<P>,
-    method: &AnyMethod<P>,
-    y: &PointOf<P>,
-    steps: &Steps,
-    has_no_choices: bool,
-) -> u32 {
-    let order = method.facts(problem).order;
-    if has_no_choices || order < LONG_STEPS {
-        return 0;
+impl Followed {
+    /// Points for each radian. Within a step the state may turn faster than at its ends.
+    const FOR_EACH_RADIAN: f64 = 2.0;
+    /// The least points within a long step, in which a body turns by some radians.
+    const WITHIN_LONG: u32 = 3;
+
+    /// By how much the state turns in a step of size h, with these rates at its ends.
+    fn turn(h: f64, [first, last]: [f64; 2]) -> f64 {
+        h * first.max(last)
     }
-    let [t0, _] = steps.t_span();
-    let mut v = problem.group().zero();
-    problem.f(ScalarOf::<P>::lit(t0), y, &mut v, &mut problem.work());
-    let rate: f64 = problem.group().norm(&v).into();
-    let h = match steps {
-        Steps::Equal(grid) => grid.h().abs(),
-        // Steps that are chosen turn by some radians at most.
-        Steps::ByError { .. } => 0.0,
+    /// The points within a step.
+    fn within(h: f64, rates: [f64; 2]) -> u32 {
+        (Self::FOR_EACH_RADIAN * Self::turn(h, rates)) as u32
+    }
+    /// The points within a step of a method of high order.
+    fn within_long(h: f64, rates: [f64; 2]) -> u32 {
+        Self::within(h, rates).max(Self::WITHIN_LONG)
+    }
+
+    /// The end of the step from here, and true if the state has to be followed there.
+    fn next(self, t: f64, rate: f64, within: fn(f64, [f64; 2]) -> u32) -> (Followed, bool) {
+        let (h, rates) = ((t - self.t).abs(), [self.rate, rate]);
+        let turned = self.turned + Self::turn(h, rates);
+        let is_followed =
+            turned.is_nan() || within(h, rates) > 0 || Self::FOR_EACH_RADIAN * turned > 1.0;
+        (Followed { t, rate, turned: if is_followed { 0.0 } else { turned } }, is_followed)
+    }
+}
+
+/// An event without zeros that shows the state to `fill` where its choices are followed, before all other events of a
+/// step. Its g is how fast the state turns, which is > 0.
+fn following<'a, Y>(
+    fill: &'a dyn Fn(f64, &Y),
+    rate: impl Fn(f64, &Y) -> f64 + 'a,
+    [is_forward, is_long]: [bool; 2],
+) -> Event<'a, Y> {
+    let within = if is_long { Followed::within_long } else { Followed::within };
+    let nowhere = Followed { t: f64::NAN, rate: f64::NAN, turned: f64::NAN };
+    let (mut start, mut end) = (nowhere, nowhere);
+    let g = move |t: f64, y: &Y| {
+        let rate = Some(rate(t, y)).filter(|rate| *rate > 0.0 && rate.is_finite());
+        let rate = rate.unwrap_or(f64::MIN_POSITIVE);
+        if t != end.t && (end.t.is_nan() || (t > end.t) == is_forward) {
+            start = end;
+        } else if t != end.t {
+            // Within a step.
+            fill(t, y);
+            return rate;
+        }
+        let (next, is_followed) = start.next(t, rate, within);
+        end = next;
+        if is_followed {
+            fill(t, y);
+        }
+        rate
     };
-    (FOR_EACH_RADIAN * h * rate).clamp(WITHIN_LONG, WITHIN_MOST).ceil() as u32
+    Event::new("", g).points_by(within)
 }
 
 /// Integrate `problem` from `y` by the method that `spec` names: see [`Model::drive`](super::Model::drive).
@@ -377,7 +417,7 @@ pub(crate) fn drive_by<P: Runnable>(
     problem: &Arc<P>,
     y: PointOf<P>,
     plan: Plan<'_>,
-    RowsOf { schema, row_of, shared }: RowsOf<'_, P>,
+    RowsOf { schema, row_of, turn_rate, shared }: RowsOf<'_, P>,
     watcher: &mut dyn Watcher,
 ) -> Result<Outcome, RunError> {
     let method = Arc::new(problem.method(spec)?);
@@ -393,7 +433,8 @@ pub(crate) fn drive_by<P: Runnable>(
         branches.borrow_mut().follow(t, &mut numbers);
     };
     let gap = schema.longest_gap();
-    let points = points_within(problem, &method, &y, &steps, branches.borrow().is_empty());
+    let is_long = method.facts(problem).order >= LONG_STEPS;
+    let [t0, t1] = steps.t_span();
     let mut solve = Solve::shared(problem.clone(), method, steps.t_span()).save(save).stops(stops);
     solve = match steps {
         Steps::Equal(grid) => solve.grid(grid),
@@ -422,13 +463,10 @@ pub(crate) fn drive_by<P: Runnable>(
         });
     }
     let (fill, numbers) = (&fill, &numbers);
-    if points > 0 || branches.borrow().count_turns() {
-        // No zero: it sees each step before all events, where the choices are followed.
-        let follow = |t: f64, y: &PointOf<P>| {
-            fill(t, y);
-            1.0
-        };
-        solve = solve.event(Event::new("", follow).points(points));
+    if !branches.borrow().is_empty() {
+        let least = gap.map_or(0.0, |gap| 1.0 / gap);
+        let rate = move |t: f64, y: &PointOf<P>| turn_rate(t, y).max(least);
+        solve = solve.event(following(fill, rate, [t1 > t0, is_long]));
     }
     for (index, event) in events.into_iter().enumerate() {
         let EventPlan { name, value, direction, stop_after, points, change, .. } = event;

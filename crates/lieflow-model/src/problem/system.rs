@@ -239,8 +239,18 @@ impl<S: System> Run for On<S> {
             values_of(&self.system, asked.quantities, Moment::of_run(t, t0), y, numbers);
             self.sizes(asked, y, numbers);
         };
+        let turn_rate = |t: f64, y: &PointOf<S>| {
+            let rates =
+                asked.quantities.iter().map(|&q| (S::QUANTITIES[q].turn_rate)(&self.system, t, y));
+            rates.fold(0.0, f64::max)
+        };
         let shared = || self.shared(asked.quantities, t0);
-        let rows = RowsOf { schema: asked.schema, row_of: &row_of, shared: &shared };
+        let rows = RowsOf {
+            schema: asked.schema,
+            row_of: &row_of,
+            turn_rate: &turn_rate,
+            shared: &shared,
+        };
         let start = self.start_at(plan.start.as_deref())?;
         drive_by(method, problem, start, plan, rows, watcher)
     }

@@ -2,7 +2,6 @@
 
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 use core::ops::Range;
-use std::collections::BTreeMap;
 
 use super::Schema;
 
@@ -57,7 +56,7 @@ impl Branch {
         match self {
             Branch::Single => false,
             Branch::Sign => pairs().map(|(a, b)| a * b).sum::<f64>() < 0.9,
-            Branch::HalfTurns { .. } => pairs().any(|(a, b)| (a - b).abs() > 0.3),
+            Branch::HalfTurns { .. } => pairs().map(|(a, b)| (a - b).abs()).sum::<f64>() > 0.3,
             Branch::Euler { .. } => pairs().any(|(a, b)| (a - b).abs() > 1.0),
         }
     }
@@ -126,6 +125,45 @@ impl Moment {
     }
 }
 
+/// The known points of a step in the order of their times, each with its values. A new step allocates nothing.
+#[derive(Clone, Debug, Default)]
+struct Known {
+    moments: Vec<Moment>,
+    /// The values of each point, one after the other.
+    values: Vec<f64>,
+}
+
+impl Known {
+    /// The number of values at each point.
+    fn width(&self) -> usize {
+        self.values.len().checked_div(self.moments.len()).unwrap_or(0)
+    }
+    /// The values of the last point up to this moment, or else of the first one. None without points.
+    fn up_to(&self, moment: Moment) -> Option<&[f64]> {
+        let after = self.moments.partition_point(|known| *known <= moment);
+        self.values.chunks_exact(self.width().max(1)).nth(after.saturating_sub(1))
+    }
+    /// A point more.
+    fn add(&mut self, moment: Moment, values: &[f64]) {
+        // Rows come in the order of time: the first points are not needed again.
+        if self.moments.len() >= KNOWN_MOST {
+            let width = self.width();
+            self.moments.drain(..KNOWN_MOST / 2);
+            self.values.drain(..KNOWN_MOST / 2 * width);
+        }
+        let place = self.moments.partition_point(|known| *known < moment);
+        self.moments.insert(place, moment);
+        let first = place * values.len();
+        self.values.splice(first..first, values.iter().copied());
+    }
+    /// This point alone.
+    fn restart(&mut self, moment: Moment, values: &[f64]) {
+        self.moments.clear();
+        self.values.clear();
+        self.add(moment, values);
+    }
+}
+
 /// The columns with choices, and their values in the last step.
 ///
 /// Each point follows the last known one before it in the step, so that rows are continuous where neighbours are. Points
@@ -140,10 +178,12 @@ pub(crate) struct Branches {
     /// The values of these columns at the end, one after the other. They have no choice yet, because what lies within the
     /// step may be seen later.
     end: Vec<f64>,
-    /// The known points by their [`Moment`], from the start of the step on: the values at each.
-    known: BTreeMap<Moment, Box<[f64]>>,
+    /// The known points from the start of the step on.
+    known: Known,
     /// The values of a point, as they are followed.
     values: Vec<f64>,
+    /// The values at the start of a step.
+    start: Vec<f64>,
 }
 
 impl Branches {
@@ -156,19 +196,15 @@ impl Branches {
             is_forward: t1 > t0,
             front: f64::NAN,
             end: Vec::new(),
-            known: BTreeMap::new(),
+            known: Known::default(),
             values: Vec::new(),
+            start: Vec::new(),
         }
     }
 
     /// True if no value has a choice.
     pub(crate) fn is_empty(&self) -> bool {
         self.columns.is_empty()
-    }
-
-    /// True if turns between two points count, so that each step has to be seen. A sign follows the point before.
-    pub(crate) fn count_turns(&self) -> bool {
-        self.columns.iter().any(|(branch, _)| *branch != Branch::Sign)
     }
 
     /// The values of all columns with choices in a row.
@@ -183,10 +219,7 @@ impl Branches {
 
     /// values ← the choice at t that is nearest to the last known point up to t. Returns true if it is far from that.
     fn choose(&self, t: f64, values: &mut [f64]) -> bool {
-        let last = self.known.range(..=self.moment(t)).next_back();
-        let Some((_, before)) = last.or_else(|| self.known.first_key_value()) else {
-            return true;
-        };
+        let Some(before) = self.known.up_to(self.moment(t)) else { return true };
         let (mut first, mut is_far) = (0, false);
         for (branch, places) in &self.columns {
             let place = first..first + places.len();
@@ -213,9 +246,12 @@ impl Branches {
         let has_values = values.iter().all(|x| x.is_finite());
         if self.front.is_nan() || self.is_after(t, self.front) {
             if !self.front.is_nan() && !self.end.is_empty() {
-                let mut start = core::mem::take(&mut self.end);
+                let mut start = core::mem::take(&mut self.start);
+                core::mem::swap(&mut start, &mut self.end);
+                self.end.clear();
                 self.choose(self.front, &mut start);
-                self.known = BTreeMap::from([(self.moment(self.front), start.into())]);
+                self.known.restart(self.moment(self.front), &start);
+                self.start = start;
             }
             self.front = t;
             // A point without values is skipped.
@@ -227,12 +263,8 @@ impl Branches {
         for (place, value) in places().zip(&values) {
             numbers[place] = *value;
         }
-        if is_far && has_values && !self.known.is_empty() && t != self.front {
-            // Rows come in the order of time: the first points are not needed again.
-            if self.known.len() >= KNOWN_MOST {
-                self.known.pop_first();
-            }
-            self.known.insert(self.moment(t), values.clone().into());
+        if is_far && has_values && !self.known.moments.is_empty() && t != self.front {
+            self.known.add(self.moment(t), &values);
         }
         self.values = values;
     }
@@ -241,7 +273,7 @@ impl Branches {
     pub(crate) fn cut(&mut self, t: f64, numbers: &[f64]) {
         let places = self.columns.iter().flat_map(|(_, places)| places.clone());
         self.end = places.map(|place| numbers[place]).collect();
-        self.known = BTreeMap::from([(self.moment(t), self.end.clone().into())]);
+        self.known.restart(self.moment(t), &self.end);
         self.front = t;
     }
 
@@ -250,11 +282,12 @@ impl Branches {
         let mut bytes = driver.to_vec();
         if !self.is_empty() {
             let mut write = |x: f64| bytes.extend(x.to_le_bytes());
-            for (moment, values) in &self.known {
+            let all = self.known.values.chunks_exact(self.known.width().max(1));
+            for (moment, values) in self.known.moments.iter().zip(all) {
                 values.iter().copied().chain([moment.time()]).for_each(&mut write);
             }
             self.end.iter().copied().for_each(&mut write);
-            [self.front, self.end.len() as f64, self.known.len() as f64]
+            [self.front, self.end.len() as f64, self.known.moments.len() as f64]
                 .into_iter()
                 .for_each(write);
         }
@@ -278,11 +311,11 @@ impl Branches {
         let mut taken = || {
             let [front, end, points] = last(3)?[..] else { return None };
             let end = last(end as usize)?;
-            let mut known = BTreeMap::new();
+            let mut known = Known::default();
             for _ in 0..points as usize {
                 let mut values = last(count + 1)?;
                 let moment = Moment::of(values.pop()?);
-                known.insert(moment, values.into());
+                known.add(moment, &values);
             }
             Some((front, end, known))
         };

@@ -53,6 +53,16 @@ fn rows(scene: &Scene) -> Vec<(f64, Vec<f64>)> {
     rows
 }
 
+/// The rows of a run as the scene states it.
+fn driven(scene: &Scene) -> Vec<(f64, Vec<f64>)> {
+    let model = scene.model().unwrap();
+    let mut rows = Vec::new();
+    let mut sink = |t: f64, row: Row<'_>| rows.push((t, row.values().to_vec()));
+    let plan = scene.plan(model.schema()).unwrap();
+    model.drive(&scene.method, plan, &mut Rows(&mut sink)).unwrap();
+    rows
+}
+
 /// The largest difference of angles, up to whole turns.
 fn apart(a: &[f64], b: &[f64]) -> f64 {
     let gap = |(a, b): (&f64, &f64)| (0.5 * (a - b)).sin().abs() * 2.0;
@@ -139,12 +149,7 @@ fn events_change_no_angle_of_a_row() {
              quantities = [\"euler_zyx\"]\ninterval = 0.1\n"
         );
         let scene = Scene::parse("scene", &text).unwrap_or_else(|error| panic!("{error}"));
-        let model = scene.model().unwrap();
-        let mut rows = Vec::new();
-        let mut sink = |t: f64, row: Row<'_>| rows.push((t, row.values()[..3].to_vec()));
-        let plan = scene.plan(model.schema()).unwrap();
-        model.drive(&scene.method, plan, &mut Rows(&mut sink)).unwrap();
-        rows
+        driven(&scene)
     };
     let event = |when: &str| format!("[[events]]\nname = \"{}\"\nwhen = \"{when}\"\n", when.len());
     let several = event("euler_zyx3 + 1") + &event("euler_zyx1") + &event("euler_zyx2 - 0.25");
@@ -185,17 +190,64 @@ fn turns_between_rows_are_counted() {
                 quantities = [\"euler_zyx\", \"quaternion\"]\ncount = 5\n";
     for method in ["", "[method]\nname = \"exact\"\n", "[method]\nname = \"rkmk dop853 exp\"\n"] {
         let scene = Scene::parse("scene", &format!("{text}{method}")).unwrap();
-        let model = scene.model().unwrap();
-        let mut rows = Vec::new();
-        let mut sink = |t: f64, row: Row<'_>| rows.push((t, row.values().to_vec()));
-        model
-            .drive(&scene.method, scene.plan(model.schema()).unwrap(), &mut Rows(&mut sink))
-            .unwrap();
+        let rows = driven(&scene);
         assert!(rows.len() <= 7, "{}", rows.len());
         for (t, row) in rows {
             let yaw = 0.3 + 1.5 * t;
             assert!((row[0] - yaw).abs() < 1e-10, "{method}, t = {t}: {row:?}, {yaw}");
             assert!((row[3] - (0.5 * yaw).cos()).abs() < 1e-10, "{method}, t = {t}: {row:?}");
+        }
+    }
+}
+
+/// Bodies of every kind that turn about the third axis by 3 radians each unit of time, many turns in a step: no turn is
+/// lost, whatever the method, its steps and the rows.
+#[test]
+fn no_kind_loses_a_turn() {
+    let kinds = [
+        "kind = \"rigid-body\"\ninertia = [1, 1, 2]\nomega_body = [0, 0, 3]",
+        "kind = \"heavy-top\"\ninertia = [1, 1, 1.5]\nweight = [0, 0, 1]\nomega_body = [0, 0, 3]\neuler.zyx = [0, 0, 0]",
+        "kind = \"driven-body\"\ninertia = [1, 1, 1.5]\nomega_body = [0, 0, 3]\ntorque = [0, 0, 0]",
+        "kind = \"rigid-motion\"\nomega = [0, 0, 3]\nvelocity = [\"1e6*t\", 0, 0]",
+        "kind = \"rigid-motion\"\nomega = [0, 0, 3]\nvelocity = [0, 0, 0]\nframe = \"space\"",
+        "kind = \"composed\"\nparts = [{ name = \"x\", space = \"numbers\", start = [0], field = [\"sin(t)\"] },\n\
+         { name = \"g\", space = \"rotation\", field = [0, 0, 3] }]",
+    ];
+    let methods = [
+        "",
+        "rtol = 1e-6\n[method]\nname = \"rkmk dopri5\"",
+        "dt = 1.25\n[method]\nname = \"rkmk4\"",
+        "dt = 7.5\n[method]\nname = \"cf4\"",
+        "steps = 1\n[method]\nname = \"rkmk dop853\"",
+    ];
+    for (kind, method) in kinds.iter().flat_map(|kind| methods.map(|method| (kind, method))) {
+        for rows in ["count = 2", "count = 41", "every = 1"] {
+            let text = format!(
+                "[problem]\n{kind}\n[time]\nt_span = [0, 60]\n{method}\n[output]\n\
+                 quantities = [\"euler_zyx\", \"quaternion\"]\n{rows}\n"
+            );
+            let scene = Scene::parse("scene", &text).unwrap_or_else(|error| panic!("{error}"));
+            for (t, row) in driven(&scene) {
+                let yaw = 3.0 * t;
+                assert!((row[0] - yaw).abs() < 1e-7, "{text}, t = {t}: {row:?}, {yaw}");
+                assert!((row[3] - (0.5 * yaw).cos()).abs() < 1e-7, "{text}, t = {t}: {row:?}");
+            }
+        }
+    }
+}
+
+/// The rate of a body grows from 0 to 40 radians each unit of time, and falls again. It is the rate of each step that counts.
+#[test]
+fn a_rate_that_grows_loses_no_turn() {
+    let text = "[problem]\nkind = \"rigid-motion\"\nomega = [0, 0, \"2*t\"]\nvelocity = [0, 0, 0]\n[time]\n\
+                t_span = [-20, 20]\n[output]\nquantities = [\"euler_zyx\"]\n";
+    for method in ["", "[method]\nname = \"magnus43\"\n", "[method]\nname = \"rkmk dop853\"\n"] {
+        for rows in ["count = 3\n", "interval = 0.7\n"] {
+            let scene = Scene::parse("scene", &format!("{text}{rows}{method}")).unwrap();
+            for (t, row) in driven(&scene) {
+                let yaw = t * t - 400.0;
+                assert!((row[0] - yaw).abs() < 1e-4, "{method}{rows}, t = {t}: {row:?}, {yaw}");
+            }
         }
     }
 }

@@ -174,6 +174,14 @@ fn riccati_angles_count_the_poles_between_rows() {
         assert_eq!(rows.len(), 2);
         assert!((rows[1] - 60.0 * rate).abs() < 1e-9, "{problem}, {method}: {rows:?}");
     }
+    // Steps of a given size that pass poles, too.
+    for (keys, rate) in [one, two, back] {
+        let problem = format!("kind = \"riccati\"\n{keys}");
+        let of =
+            scene(&problem, "name = \"magnus4\"", "t_span = [0, 60]\nsteps = 3", "[\"angles\"]");
+        let sum: f64 = last(&of).iter().sum();
+        assert!((sum - 60.0 * rate).abs() < 1e-9, "{problem}: {sum}");
+    }
     // The rate that steps are limited by is that of the sum: here P moves by D and by B alone.
     let gap = |keys: &str| {
         let of = scene(

@@ -40,6 +40,8 @@ impl Orientation {
 pub(in crate::kinds) trait Oriented: System {
     /// The rotation to space.
     fn orientation(&self, y: &PointOf<Self>) -> Orientation;
+    /// How fast the orientation turns: the length of the angular velocity.
+    fn turn_rate(&self, t: f64, y: &PointOf<Self>) -> f64;
     /// Why the problem has no orientation, if it has none.
     fn without_orientation(&self) -> Option<&'static str> {
         None
@@ -154,9 +156,8 @@ pub(in crate::kinds) const fn quaternion<S: Oriented>() -> Quantity<S> {
     Quantity::numbers(
         "quaternion",
         &["qw", "qx", "qy", "qz"],
-        "the attitude as a unit quaternion, real part first, x -> q x q*; q and -q are the same attitude: each row has \
-         the sign that is nearer to the row before, the first has qw >= 0, or the sign of the key quaternion of a \
-         rigid-body",
+        "the attitude as a unit quaternion, real part first, x -> q x q*; q and -q are the same attitude: it is continuous \
+         from the start on, also between rows; the first row has qw >= 0, or the sign of the key quaternion of a rigid-body",
         |body: &S, _, y, row| {
             let (q, is_given) = wxyz(body, y);
             row.extend(if q[0] < 0.0 && !is_given { q.map(|x| -x) } else { q });
@@ -164,8 +165,12 @@ pub(in crate::kinds) const fn quaternion<S: Oriented>() -> Quantity<S> {
     )
     .of_quaternion()
     .continuous_by(|_| Branch::Sign)
+    .turning_by(S::turn_rate)
     .missing_where(S::without_orientation)
 }
+
+/// Euler angles are looked at as if the body turned so much faster: near their singular angle they do.
+const FASTER: f64 = 4.0;
 
 /// The attitude as the Euler angles of a sequence.
 pub(in crate::kinds) const fn angles<S: Oriented, const SEQUENCE: usize>() -> Quantity<S> {
@@ -175,6 +180,7 @@ pub(in crate::kinds) const fn angles<S: Oriented, const SEQUENCE: usize>() -> Qu
     })
     .in_radians()
     .continuous_by(|_| SEQUENCES[SEQUENCE].branch())
+    .turning_by(|body: &S, t, y| FASTER * body.turn_rate(t, y))
     .missing_where(S::without_orientation)
 }
 

@@ -294,6 +294,12 @@ impl Oriented for Composed {
     fn orientation(&self, (_, (rotations, _)): &Point) -> Orientation {
         rotations.first().map_or(Orientation::NotModelled, |g| Orientation::Matrix(*g))
     }
+    fn turn_rate(&self, t: f64, y: &Point) -> f64 {
+        let mut at = vec![t];
+        self.parts.iter().for_each(|part| part.space.show(y, &mut at));
+        let field = self.rotations().next().map_or(&[][..], |part| &part.field);
+        field.iter().fold(0.0, |length: f64, formula| length.hypot(formula.value(&at)))
+    }
     fn without_orientation(&self) -> Option<&'static str> {
         match self.rotations().count() {
             0 => Some("no part is a rotation"),
