@@ -133,6 +133,11 @@ pub fn principal_axes(tensor: &Matrix3<f64>) -> Result<([f64; 3], Matrix3<f64>),
     let mut order = [0, 1, 2];
     order.sort_by(|&a, &b| eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b]));
     let moments = order.map(|k| eigen.eigenvalues[k] * size);
+    if moments[0] <= 0.0 {
+        let arg = "the least principal moment of inertia";
+        let expected = "a number > 0: a positive definite tensor";
+        return Err(Error::out_of_range(arg, moments[0], expected));
+    }
     check_inertia(&moments)?;
     let mut axes = Matrix3::from_columns(&order.map(|k| eigen.eigenvectors.column(k).into_owned()));
     if axes.determinant() < 0.0 {

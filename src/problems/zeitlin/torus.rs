@@ -5,7 +5,8 @@
 //! (T_m)_rc = e^{2πi m₁(r + m₂/2)/N} where c = r + m₂ mod N, else 0: T_m = ζ^{m₁m₂/2} g^{m₁} h^{m₂}
 //!
 //! with the clock g = diag(ζ^r), ζ = e^{2πi/N}, and the shift h. \[T_m, T_n\] = −2i sin(π(m×n)/N) T_{m+n}, so
-//! that with 1/ħ = N/2π commutators become Poisson brackets, ω̇ = −u·∇ω, u = (−∂_yψ, ∂_xψ).
+//! that with 1/ħ = N/2π commutators become Poisson brackets, ω̇ = −u·∇ω, u = (−∂_yψ, ∂_xψ). A wave number of the sum
+//! beyond (N − 1)/2 is one of those within: T_{m + Ne} = (−1)^{e₁m₂ + e₂m₁ + Ne₁e₂} T_m for whole e₁, e₂.
 //!
 //! Δ T_m = −|m|² T_m. It maps every cyclic diagonal c = r + m₂ to itself by a symmetric circulant, which is diagonal in
 //! the real Fourier basis. So a solve takes two real products.

@@ -434,7 +434,8 @@ fn tableau_in_words(TableauInfo { name, order, stages, pair, .. }: &TableauInfo)
     let takes = all_methods().filter(|info| info.takes_tableau).map(|info| info.name);
     let takes: Vec<_> = takes.collect();
     let mut text = format!("{name}\n");
-    let what = format!("A Runge–Kutta tableau of order {order} with {stages} stages, {with}.");
+    let many = if *stages == 1 { "" } else { "s" };
+    let what = format!("A Runge–Kutta tableau of order {order} with {stages} stage{many}, {with}.");
     text += &wrap(&what, " ");
     text += &wrap(&format!("methods that take it: {}", takes.join(", ")), " ");
     text += &wrap(&format!("in a scene: name = \"{}\", tableau = \"{name}\"", takes[0]), " ");
@@ -470,6 +471,9 @@ pub fn run(args: &MethodsArgs) -> Result<(), CliError> {
             (Named::Map(map), true) => print_json(&MapEntry::of(map)),
             (Named::Map(map), false) => print(&map_in_words(map)),
         };
+    }
+    if args.scene.is_none() && !args.settings.set.is_empty() {
+        return Err(CliError::Message("--set changes a scene: name it with --for".into()));
     }
     let scene = args.scene.as_deref().map(|scene| args.settings.open(scene)).transpose()?;
     let keep = match (&scene, &args.keep) {

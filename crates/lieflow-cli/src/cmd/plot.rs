@@ -16,9 +16,10 @@ use crate::output::{self, SUMMARY, Sample, TIME, TRAJECTORY, Written, together, 
 /// Run the command.
 ///
 /// # Errors
-/// A folder without a run, a file that is no file of rows, a column that the runs do not have; the page cannot be
-/// written.
+/// A folder without a run, a run that is named twice, a file that is no file of rows, a column that the runs do not have;
+/// the page cannot be written, or would replace that of a run.
 pub fn run(args: &PlotArgs) -> Result<(), CliError> {
+    check(args)?;
     let names = names_of(&args.runs);
     let runs = args.runs.iter().zip(names).map(|(folder, name)| read(folder, name, args));
     let runs: Vec<Written> = runs.collect::<Result<_, _>>()?;
@@ -42,6 +43,29 @@ pub fn run(args: &PlotArgs) -> Result<(), CliError> {
         counted(runs.len(), "run"),
         path.display()
     ))
+}
+
+/// Checks what can be checked before the runs are read.
+fn check(args: &PlotArgs) -> Result<(), CliError> {
+    let wrong = |message: String| Err(CliError::Message(message));
+    if let (Some(from), Some(to)) = (args.from, args.to)
+        && from > to
+    {
+        return wrong(format!("--from {from} is after --to {to}"));
+    }
+    let same = |folder: &PathBuf| folder.canonicalize().unwrap_or_else(|_| folder.clone());
+    for (i, folder) in args.runs.iter().enumerate() {
+        if args.runs[..i].iter().any(|other| same(other) == same(folder)) {
+            return wrong(format!("the run in `{}` is named twice", folder.display()));
+        }
+    }
+    if TRAJECTORY.iter().chain([&SUMMARY]).any(|file| args.out.join(file).exists()) {
+        return wrong(format!(
+            "`{}` is the folder of a run, whose page would be replaced: name another folder with --out",
+            args.out.display()
+        ));
+    }
+    Ok(())
 }
 
 /// What the runs are called: their folders without what all paths begin with.
@@ -118,23 +142,26 @@ fn known_unit(runs: &[Written], column: &str) -> Result<(), CliError> {
     }
 }
 
-/// The units of a run, by the names of its columns. A folder without a summary has none.
-fn units_of(folder: &Path) -> Result<BTreeMap<String, String>, CliError> {
-    #[derive(Deserialize)]
-    struct Stated {
-        #[serde(default)]
-        units: BTreeMap<String, String>,
-    }
+/// What the summary of a run states.
+#[derive(Default, Deserialize)]
+struct Stated {
+    /// The units, by the names of columns.
+    #[serde(default)]
+    units: BTreeMap<String, String>,
+    #[serde(default)]
+    completed: bool,
+}
+
+/// What the summary of a run states. A folder without a summary has the rows of a run that did not end.
+fn stated(folder: &Path) -> Result<Stated, CliError> {
     let path = folder.join(SUMMARY);
     if !path.exists() {
-        return Ok(BTreeMap::new());
+        return Ok(Stated::default());
     }
     let text = fs::read_to_string(&path).map_err(CliError::io("read", &path))?;
-    let stated = serde_json::from_str(&text);
-    let stated: Stated = stated.map_err(|error| {
+    serde_json::from_str(&text).map_err(|error| {
         CliError::Message(format!("{}: {error}, expected the summary of a run", path.display()))
-    })?;
-    Ok(stated.units)
+    })
 }
 
 /// The rows of a run between two times.
@@ -156,7 +183,7 @@ fn read(folder: &Path, name: String, args: &PlotArgs) -> Result<Written, CliErro
         return Err(wrong(1, "expected the names of columns, t first"));
     }
     let columns: Vec<String> = columns.collect();
-    let (mut rows, mut values) = (Sample::default(), Vec::new());
+    let (mut rows, mut values, mut last) = (Sample::default(), Vec::new(), f64::NAN);
     let within =
         |t: f64| args.from.is_none_or(|from| t >= from) && args.to.is_none_or(|to| t <= to);
     for (i, line) in lines.enumerate() {
@@ -170,12 +197,17 @@ fn read(folder: &Path, name: String, args: &PlotArgs) -> Result<Written, CliErro
             let what = format!("{} numbers, expected {}", values.len(), columns.len() + 1);
             return Err(wrong(i + 2, &what));
         }
-        if within(values[0]) {
+        last = values[0];
+        if within(last) {
             rows.see(values[0], &values[1..]);
         }
     }
     if rows.seen() == 0 {
         return Err(CliError::Message(format!("{} has no rows at these times", path.display())));
     }
-    Ok(Written { name, columns, units: units_of(folder)?, rows })
+    let Stated { units, completed } = stated(folder)?;
+    if !completed {
+        eprintln!("note: `{name}` is a run that is not complete: its rows end at t = {last}");
+    }
+    Ok(Written { name, columns, units, rows })
 }

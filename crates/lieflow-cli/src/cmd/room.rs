@@ -143,12 +143,12 @@ impl Room {
     }
 }
 
-/// The free bytes on the disk of a folder, which may not exist yet. None if they are not known.
+/// The free bytes on the disk of a folder, which may not exist yet. None if they are not known, as of what is no disk.
 #[cfg(unix)]
 fn free(folder: &Path) -> Option<u64> {
     let there = folder.ancestors().find(|folder| folder.is_dir()).unwrap_or(Path::new("."));
     let disk = rustix::fs::statvfs(there).ok()?;
-    disk.f_bavail.checked_mul(disk.f_frsize)
+    (disk.f_blocks > 0).then_some(disk.f_bavail)?.checked_mul(disk.f_frsize)
 }
 
 #[cfg(not(unix))]

@@ -197,6 +197,7 @@ pub fn run_scene(
         eprintln!("note: {}: {much}", scene.name);
     }
     output::make_folder(folder)?;
+    let _lock = output::Lock::of(folder)?;
     let (mut state, drifts, driver) = match resume {
         true => RunState::open(folder, scene.fingerprint)?,
         false => (RunState::begin(folder, scene.fingerprint)?, Vec::new(), None),

@@ -9,6 +9,7 @@ use crate::error::CliError;
 use crate::output::{print, print_json, wrap};
 use lieflow_model::kinds::{self, KINDS};
 use lieflow_model::problem::Kind;
+use lieflow_model::reader::help_for;
 use lieflow_model::scene::{BUNDLED, Bundled, Scene, unknown_scene};
 
 #[derive(Serialize)]
@@ -212,8 +213,20 @@ fn one(name: &str, args: &ScenesArgs) -> Result<(), CliError> {
         }
         (None, Some(kind)) if args.json => print_json(&kind_entry(kind)),
         (None, Some(kind)) => print(&kind_in_full(&kind_entry(kind), &all_scenes()?)),
+        (None, None) if args.kind => Err(unknown_kind(name)),
         (None, None) => Err(unknown_scene(name).into()),
     }
+}
+
+/// The error for a name that is no kind.
+fn unknown_kind(name: &str) -> CliError {
+    let of_scene = Scene::bundled(name.strip_suffix(".toml").unwrap_or(name));
+    let kinds: Vec<&str> = KINDS.iter().map(|kind| kind.name).collect();
+    let help = match of_scene {
+        Ok(scene) => format!("`{name}` is a scene of kind `{}`", scene.problem.kind().name),
+        Err(_) => help_for(name, &kinds),
+    };
+    CliError::Message(format!("unknown kind of problem `{name}`: {help}"))
 }
 
 /// Run the command.

@@ -146,17 +146,18 @@ impl Candidate {
             if !all.iter().any(|candidate| stands_for(name, candidate)) {
                 let mut known: Vec<&str> = all.iter().map(|c| c.method.name.as_str()).collect();
                 known.dedup();
-                // A method that does not fit is spelt right.
                 let first = name.split_whitespace().next().unwrap_or_default();
-                let is_spelt = all_methods().any(|info| info.name == first);
-                let near = suggest(name, &known).filter(|_| !is_spelt);
-                let near = near.map(|near| format!("did you mean `{near}`?"));
-                let listed =
-                    || "`lieflow methods --for` with the scene lists those that fit".into();
-                return Err(CliError::Message(format!(
-                    "no method `{name}` fits this scene; {}",
-                    near.unwrap_or_else(listed)
-                )));
+                return Err(CliError::Message(if all_methods().any(|info| info.name == first) {
+                    format!(
+                        "no method `{name}` fits this scene; `lieflow methods --for` with the scene lists those that fit"
+                    )
+                } else if TABLEAUS.iter().any(|tableau| tableau.name == first) {
+                    format!("`{first}` is a tableau: name it after a method, as in `rkmk {name}`")
+                } else {
+                    let near = suggest(name, &known).map(|near| format!("did you mean `{near}`?"));
+                    let help = near.unwrap_or_else(|| "`lieflow methods` lists them".into());
+                    format!("unknown method `{name}`; {help}")
+                }));
             }
         }
         let chosen = |candidate: &&Candidate| names().any(|name| stands_for(name, candidate));

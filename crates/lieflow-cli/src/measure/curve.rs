@@ -170,9 +170,11 @@ pub struct Curve {
 
 /// Errors outside of this range say nothing of the order: larger ones are not yet asymptotic,
 /// smaller ones are rounding.
-const ASYMPTOTIC: core::ops::Range<f64> = 1e-12..1e-2;
+const ASYMPTOTIC: core::ops::Range<f64> = 1e-12..1e-1;
 /// An error is clear of the floor if it is larger by this factor.
 const CLEAR: f64 = 10.0;
+/// Larger errors that no longer fall are no rounding, unless the floor is as large.
+const ROUNDING_MOST: f64 = 1e-4;
 /// An error is clear of rounding that shows if it is larger by this factor.
 const ABOVE: f64 = 3.0;
 /// Rounding has begun where the slope falls below this part of the slope of the pair of runs before.
@@ -229,7 +231,8 @@ impl Curve {
             Some([Some(before), Some(last)]) => *last >= STEADY * before,
             _ => true,
         };
-        if least == last && falls { self.floor } else { run.error.max(self.floor) }
+        let is_floor = least == last && falls || run.error > ROUNDING_MOST;
+        if is_floor { self.floor } else { run.error.max(self.floor) }
     }
 
     /// The measured order: the slope of the least-squares line through log h, log error. The line goes through the

@@ -1,6 +1,6 @@
 //! Files: each is written under another name and gets its own when it is complete.
 
-use std::fs::{self, File};
+use std::fs::{self, File, TryLockError};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
@@ -61,6 +61,37 @@ pub fn write_figures(folder: &Path, page: &Page) -> Result<Vec<String>, CliError
 /// It cannot be made.
 pub fn make_folder(path: &Path) -> Result<(), CliError> {
     fs::create_dir_all(path).map_err(CliError::io("make the folder", path))
+}
+
+/// A folder that one run writes into. It is free when this value is dropped, also where the program is killed.
+#[derive(Debug)]
+pub struct Lock {
+    path: PathBuf,
+    _file: File,
+}
+
+impl Lock {
+    /// Lock a folder. A file system without locks locks nothing.
+    ///
+    /// # Errors
+    /// Another run writes into the folder, or the file of the lock cannot be written.
+    pub fn of(folder: &Path) -> Result<Self, CliError> {
+        let path = folder.join("run.lock");
+        let file = File::create(&path).map_err(CliError::io("write", &path))?;
+        match file.try_lock() {
+            Err(TryLockError::WouldBlock) => Err(CliError::Message(format!(
+                "another run writes into `{}`: wait until it ends, or name another folder with --out",
+                folder.display()
+            ))),
+            _ => Ok(Lock { path, _file: file }),
+        }
+    }
+}
+
+impl Drop for Lock {
+    fn drop(&mut self) {
+        let _ = fs::remove_file(&self.path);
+    }
 }
 
 /// Remove a file of an earlier run, if there is one.

@@ -10,7 +10,7 @@ mod summary;
 pub use figures::{
     Drawn, RowSample, Sample, Written, in_digits, moving_body, run_page, together, unit_of,
 };
-pub use files::{make_folder, remove_old, write_figures, write_file, write_page};
+pub use files::{Lock, make_folder, remove_old, write_figures, write_file, write_page};
 pub use lieflow_figures::number::{duration, number, rough, size};
 pub use progress::Progress;
 pub use rows::{EVENTS, RowFile, TRAJECTORY};

@@ -232,8 +232,10 @@ impl RunState {
         if records == 0 {
             return remove_old(&path);
         }
-        let file = OpenOptions::new().read(true).append(true).open(&path);
-        let file = file.map_err(CliError::io("read", &path))?;
+        let file = match OpenOptions::new().read(true).append(true).open(&path) {
+            Err(source) if source.kind() == io::ErrorKind::NotFound => return Err(self.damaged()),
+            opened => opened.map_err(CliError::io("read", &path))?,
+        };
         let bytes = length.checked_mul(8).and_then(|bytes| bytes.checked_mul(records));
         let there = file.metadata().map_err(CliError::io("read", &path))?.len();
         let Some(bytes) = bytes.filter(|bytes| length >= 2 && *bytes <= there) else {

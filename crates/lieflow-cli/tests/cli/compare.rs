@@ -256,7 +256,7 @@ fn wrong_options_are_refused_by_one_sentence() {
     let folder = Folder::new();
     folder.write("scene.toml", SCENE);
     for (options, words) in [
-        (["--methods", "rkmk5"], &["no method `rkmk5` fits", "did you mean `rkmk"][..]),
+        (["--methods", "rkmk5"], &["unknown method `rkmk5`", "did you mean `rkmk"][..]),
         (["--methods", "magnus4"], &["no method `magnus4` fits", "`lieflow methods --for`"]),
         (["--methods", "adaptive"], &["no method is named"]),
         (["--tolerances", "-1"], &["between 0 and 1"]),

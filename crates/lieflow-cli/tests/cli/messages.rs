@@ -212,6 +212,41 @@ fn a_step_that_is_longer_than_the_span_is_told() {
     assert!(told.contains(warning), "{told}");
 }
 
+/// What is likely meant is said: a text in another encoding, angles in degrees, a name of another list.
+#[test]
+fn slips_are_told() {
+    let folder = Folder::new();
+    folder.write("scene.toml", SCENE);
+    let utf16: Vec<u8> =
+        std::iter::once(0xfeff).chain(SCENE.encode_utf16()).flat_map(u16::to_le_bytes).collect();
+    std::fs::write(folder.path().join("utf16.toml"), utf16).unwrap();
+    let tensor = "problem.inertia=[[1, 2, 0], [2, 1, 0], [0, 0, 1]]";
+    for (args, what) in [
+        (&["run", "utf16.toml"][..], "the text is UTF-16: save it as UTF-8"),
+        (&["run", "scene.toml", "--set", tensor], "the least principal moment of inertia = -"),
+        (&["scenes", "--kind", "lorenz"], "`lorenz` is a scene of kind `lyapunov`"),
+        (&["scenes", "--kind", "rigid-bdy"], "did you mean `rigid-body`?"),
+        (&["methods", "--set", "time.dt=1"], "--set changes a scene: name it with --for"),
+        (
+            &["order", "scene.toml", "--method", "dopri5"],
+            "`dopri5` is a tableau: name it after a method, as in `rkmk dopri5`",
+        ),
+        (&["order", "scene.toml", "--method", "rkmk5"], "unknown method `rkmk5`; did you mean"),
+        (&["order", "scene.toml", "--method", "magnus6"], "no method `magnus6` fits this scene"),
+    ] {
+        let message = folder.lieflow(args).refused();
+        assert!(message.contains(what), "{args:?}: {message}");
+    }
+    let told = |angle: &str| {
+        let set = format!("problem.euler.zyx=[{angle}, 0, 0]");
+        folder.lieflow(&["run", "scene.toml", "--no-page", "--set", &set]).ok()
+    };
+    let note = "euler.zyx has the angle 90, which is more than a turn: angles are in radians. Degrees are written \"90*deg\"";
+    let words = told("90").split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(words.contains(note), "{words}");
+    assert!(!told("\"90*deg\"").contains("radians"));
+}
+
 #[test]
 fn steps_that_pass_ends_of_magnets_are_told() {
     let folder = Folder::new();

@@ -124,9 +124,31 @@ fn several_runs_are_drawn_in_one_figure() {
         (&["plot", "nowhere"][..], "there is no run in `nowhere`"),
         (&["plot", "lieflow-out/a", "--columns", "m7"], "no column `m7`"),
         (&["plot", "lieflow-out/a", "--from", "3"], "no rows at these times"),
+        (&["plot", "lieflow-out/a", "--from", "1", "--to", "0.5"], "--from 1 is after --to 0.5"),
+        (&["plot", "lieflow-out/a", "lieflow-out/../lieflow-out/a"], "is named twice"),
+        (&["plot", "lieflow-out/a", "--out", "lieflow-out/b"], "is the folder of a run"),
     ] {
         assert!(folder.lieflow(args).refused().contains(message), "{args:?}");
     }
+}
+
+#[test]
+fn a_run_that_is_not_complete_is_told() {
+    let folder = Folder::new();
+    folder.write("scene.toml", SCENE);
+    let fails = [
+        "method.name=rk",
+        "method.tableau=euler",
+        "method.map=",
+        "time.dt=4",
+        "time.t_span=[0,400]",
+    ];
+    let sets = fails.iter().flat_map(|set| ["--set", set]);
+    let args = ["run", "scene.toml", "--no-page", "--out", "part"].into_iter().chain(sets);
+    folder.lieflow(&args.collect::<Vec<_>>()).refused();
+    let run = folder.lieflow(&["plot", "part"]);
+    let expected = "note: `part` is a run that is not complete: its rows end at t = ";
+    assert!(run.code == Some(0) && run.err.contains(expected), "{run:?}");
 }
 
 /// Two thousand turns are a band, as high as they are from the start to the end; what is less than rounding is straight.

@@ -143,6 +143,9 @@ fn an_interrupted_run_says_how_to_go_on() {
     let mut run = started(&folder, &args);
     until(&mut run, || folder.path().join("out/trajectory.partial.csv").exists());
     sleep(REFERENCE.took.mul_f64(0.1));
+    // No other run writes into its folder.
+    let message = folder.lieflow(&args).refused();
+    assert!(message.contains("another run writes into `out`"), "{message}");
     let message = interrupt(run).failed(130);
     assert!(message.contains("error: interrupted at t = "), "{message}");
     assert!(message.contains("`lieflow run scene.toml --out out --resume`"), "{message}");
@@ -163,6 +166,13 @@ fn an_interrupted_run_says_how_to_go_on() {
     let message = folder.lieflow(&["run", "other.toml", "--out", "out", "--resume"]).refused();
     assert!(message.contains("the scene has changed"), "{message}");
     assert_eq!(folder.read("out/trajectory.partial.csv"), written);
+    // Nor does a state without its rows.
+    let [rows, away] = ["out/run.rows", "rows"].map(|name| folder.path().join(name));
+    fs::rename(&rows, &away).unwrap();
+    let again = [&args[..], &["--resume"]].concat();
+    let message = folder.lieflow(&again).refused();
+    assert!(message.contains("the saved run in `out` is damaged"), "{message}");
+    fs::rename(&away, &rows).unwrap();
     // The same scene in other words does.
     folder.write("scene.toml", &format!("# In other words.\n{}", scene("2500.00")));
     folder.lieflow(&["run", "scene.toml", "--out", "out", "--resume"]).ok();

@@ -392,6 +392,9 @@ fn settings_change_a_scene() {
     assert_eq!((&summary["dt"], &summary["method"]["map"]), (&json!(0.1), &json!("cay")));
     let (_, rows) = read_csv(&folder.read("out/trajectory.csv"));
     assert_eq!(rows[0][1..4], [0.6000000000000001, 0.0, 1.0]);
+    run(&["problem.inertia=[[sqrt(9), 0, 0], [0, 2.5, 0], [0, 0, cos(0)]]"]).ok();
+    let (_, rows) = read_csv(&folder.read("out/trajectory.csv"));
+    assert_eq!(rows[0][1..4], [0.6000000000000001, 0.0, 1.0]);
     run(&["method=", "time.dt=", "time.rtol=1e-9"]).ok();
     let summary = folder.json("out/summary.json");
     assert_eq!(summary["method"]["name"], "taylor16");
@@ -413,7 +416,9 @@ fn settings_change_a_scene() {
         ("time.dt=fast", "\"fast\" is not a number"),
         // A text with parentheses needs no quotes.
         ("problem.group=SO(3)", "unknown key `group` in [problem]"),
-        ("problem.inertia=[1, f(2)]", "`[1, f(2)]` is no value of TOML"),
+        ("problem.inertia={ a = f(2) }", "`{ a = f(2) }` is no value of TOML"),
+        ("problem.inertia=[1, f(2), 3]", "unknown function `f`"),
+        ("events[1].name=flip", "the scene has no list `events`"),
     ] {
         let message = run(&[set]).refused();
         assert!(message.contains(what), "{set}: {message}");

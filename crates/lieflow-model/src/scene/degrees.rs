@@ -8,10 +8,39 @@ use lieflow::catalog::Property;
 use super::run::Scene;
 use crate::reader::Tree;
 
+/// A number that is written as such.
+fn number(value: &Tree) -> Option<f64> {
+    match value {
+        Tree::Whole(n) => Some(*n as f64),
+        Tree::Number(x) => Some(*x),
+        _ => None,
+    }
+}
+
 impl Scene {
     /// What a reader should know: changes that were made to numbers of the scene, and what is likely a slip.
     pub fn notes(&self) -> Vec<String> {
-        self.problem.notes().iter().cloned().chain(self.likely_in_degrees()).collect()
+        let angles = self.angles_in_degrees().or_else(|| self.likely_in_degrees());
+        self.problem.notes().iter().cloned().chain(angles).collect()
+    }
+
+    /// The note about an Euler angle of the start that is more than a turn.
+    fn angles_in_degrees(&self) -> Option<String> {
+        let Tree::Table(keys) = &self.keys else { return None };
+        let tables = ["euler", "fixed"].into_iter().filter_map(|key| match keys.get(key)? {
+            Tree::Table(sequences) => Some((key, sequences)),
+            _ => None,
+        });
+        let mut sequences =
+            tables.flat_map(|(key, all)| all.iter().map(move |(name, list)| (key, name, list)));
+        sequences.find_map(|(key, name, list)| {
+            let Tree::List(angles) = list else { return None };
+            let angle = angles.iter().filter_map(number).find(|angle| angle.abs() > TAU)?;
+            Some(format!(
+                "{key}.{name} has the angle {angle}, which is more than a turn: angles are in radians. Degrees are written \
+                 \"{angle}*deg\""
+            ))
+        })
     }
 
     /// True if the step that was typed is longer than the span.
@@ -27,12 +56,7 @@ impl Scene {
         let rate = self.problem.rate()?;
         let Tree::Table(keys) = &self.keys else { return None };
         let Tree::List(omega) = keys.get("omega_body")? else { return None };
-        let numbers = omega.iter().map(|x| match x {
-            Tree::Whole(n) => Some(*n as f64),
-            Tree::Number(x) => Some(*x),
-            _ => None,
-        });
-        let numbers = numbers.collect::<Option<Vec<f64>>>()?;
+        let numbers = omega.iter().map(number).collect::<Option<Vec<f64>>>()?;
         let largest = numbers.into_iter().max_by(|a, b| a.abs().total_cmp(&b.abs()))?;
         let is_exact = self.method.info().is_ok_and(|info| info.keeps(Property::Everything));
         let in_seconds = self.units.time.as_deref() == Some("s");

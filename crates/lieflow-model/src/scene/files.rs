@@ -17,6 +17,9 @@ pub(super) fn text_of(reader: impl Read, what: &str) -> Result<String, String> {
     if bytes.len() as u64 > SIZE_MAX {
         return Err(format!("larger than {} MiB, expected a {what} file", SIZE_MAX >> 20));
     }
+    if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
+        return Err("the text is UTF-16: save it as UTF-8".into());
+    }
     String::from_utf8(bytes).map_err(|error| {
         let valid = error.utf8_error().valid_up_to();
         let line = error.as_bytes()[..valid].iter().filter(|byte| **byte == b'\n').count() + 1;

@@ -127,19 +127,48 @@ fn steps(path: &str) -> Result<Vec<Step<'_>>, String> {
     Ok(steps)
 }
 
-/// A value; none for nothing. A word, a name such as SO(3) and a formula with parentheses are texts, with or without quotes.
+/// A value; none for nothing. A word, a name such as SO(3) and a formula with parentheses are texts, with or without quotes,
+/// also in lists.
 fn value(text: &str) -> Result<Option<Value>, String> {
-    let is_word = text.starts_with(|c: char| c.is_ascii_alphabetic())
-        && text.chars().all(|c| c.is_ascii_alphanumeric() || "-_".contains(c));
-    let is_formula = text.contains('(') && !text.starts_with(['[', '{', '"', '\'']);
-    match text.parse() {
+    let read = |text: &str| {
+        text.parse().ok().or_else(|| is_bare_text(text).then(|| text.into())).or_else(|| list(text))
+    };
+    match read(text) {
         _ if text.is_empty() => Ok(None),
-        Ok(value) => Ok(Some(value)),
-        Err(_) if is_word || is_formula => Ok(Some(text.into())),
-        Err(_) => Err(format!(
+        Some(value) => Ok(Some(value)),
+        None => Err(format!(
             "`{text}` is no value of TOML, expected a number, a list such as [1, 2, 3] or a text in quotes"
         )),
     }
+}
+
+/// Is it a word, or a formula with parentheses?
+fn is_bare_text(text: &str) -> bool {
+    let is_word = text.starts_with(|c: char| c.is_ascii_alphabetic())
+        && text.chars().all(|c| c.is_ascii_alphanumeric() || "-_".contains(c));
+    is_word || text.contains('(') && !text.starts_with(['[', '{', '"', '\''])
+}
+
+/// A list with texts that have no quotes. None if it is no list.
+fn list(text: &str) -> Option<Value> {
+    let inner = text.strip_prefix('[')?.strip_suffix(']')?;
+    let (mut entries, mut depth, mut first) = (Vec::new(), 0, 0);
+    for (place, c) in inner.char_indices() {
+        match c {
+            // Within quotes a comma may be anything.
+            '"' | '\'' => return None,
+            '(' | '[' | '{' => depth += 1,
+            ')' | ']' | '}' => depth -= 1,
+            ',' if depth == 0 => {
+                entries.push(&inner[first..place]);
+                first = place + 1;
+            }
+            _ => {}
+        }
+    }
+    entries.push(&inner[first..]);
+    let values = entries.into_iter().map(|entry| value(entry.trim()).ok().flatten());
+    values.collect::<Option<Vec<Value>>>().map(|values| Value::Array(values.into_iter().collect()))
 }
 
 /// The item at one step of a key. A missing section is created.
@@ -150,10 +179,14 @@ fn enter<'i>(item: &'i mut Item, step: &Step<'_>, done: &str) -> Result<&'i mut 
             let length = match &*item {
                 Item::Value(Value::Array(list)) => list.len(),
                 Item::ArrayOfTables(list) => list.len(),
+                item if item.as_table_like().is_some_and(TableLike::is_empty) => {
+                    return Err(format!("the scene has no list `{done}`"));
+                }
                 _ => return Err(format!("`{done}` is no list")),
             };
             if *place > length {
-                return Err(format!("`{done}` has {length} entries"));
+                let entries = if length == 1 { "entry" } else { "entries" };
+                return Err(format!("`{done}` has {length} {entries}"));
             }
             Ok(&mut item[place - 1])
         }

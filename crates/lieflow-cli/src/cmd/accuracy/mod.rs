@@ -171,7 +171,14 @@ impl<'a> Check<'a> {
         let zeros = self.scene().events.iter().zip(&apart.events);
         let other_zeros = zeros.map(|(event, zeros)| {
             if zeros.agree() {
-                return None;
+                let is_none = self.is_exact && zeros.distance.is_nan();
+                return is_none.then(|| {
+                    format!(
+                        "event `{}` has zeros in this run where the exact motion has none: its function is smaller than the \
+                         error of the run. Its zeros have no meaning",
+                        event.name
+                    )
+                });
             }
             let others = match self.is_exact {
                 true => format!("at least {} in the exact motion", zeros.other.sure),
