@@ -3,6 +3,7 @@
 
 mod system;
 
+use core::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 
 use lieflow::groups::{LieGroup, So3};
@@ -295,10 +296,17 @@ impl Oriented for Composed {
         rotations.first().map_or(Orientation::NotModelled, |g| Orientation::Matrix(*g))
     }
     fn turn_rate(&self, t: f64, y: &Point) -> f64 {
-        let mut at = vec![t];
-        self.parts.iter().for_each(|part| part.space.show(y, &mut at));
+        thread_local! {
+            // It is asked after each step, which allocates nothing.
+            static VALUES: RefCell<Vec<f64>> = const { RefCell::new(Vec::new()) };
+        }
         let field = self.rotations().next().map_or(&[][..], |part| &part.field);
-        field.iter().fold(0.0, |length: f64, formula| length.hypot(formula.value(&at)))
+        VALUES.with_borrow_mut(|values| {
+            values.clear();
+            values.push(t);
+            self.parts.iter().for_each(|part| part.space.show(y, values));
+            field.iter().fold(0.0, |length: f64, formula| length.hypot(formula.value(values)))
+        })
     }
     fn without_orientation(&self) -> Option<&'static str> {
         match self.rotations().count() {
