@@ -253,13 +253,16 @@ named_map! {
     Cay(Cay),
 }
 
+/// The largest q that a name may state.
+const TERMS_MOST: usize = 1000;
+
 /// A type of maps that are found by their names.
 pub trait FromName: Copy + Send + Sync + 'static {
     /// The map of this name, for exp with the Baker series of dexp⁻¹ cut after the power `q`.
     ///
     /// # Errors
     /// [`Error::UnknownName`]; [`Error::Unsupported`] for a map that the type does not hold, and for a `q`
-    /// beside another map than exp.
+    /// beside another map than exp; [`Error::OutOfRange`] for a q above 1000.
     fn named(name: &str, q: Option<usize>) -> Result<Self, Error>;
 }
 
@@ -272,6 +275,10 @@ impl FromName for NamedMap {
                 expected: MAPS.iter().map(|info| info.name).collect(),
             })?;
         match (info.map, q) {
+            // Terms beyond are below the smallest number, wherever the series converges.
+            (NamedMap::Exp(_), Some(q)) if q > TERMS_MOST => {
+                Err(Error::out_of_range("q", q as f64, format!("at most {TERMS_MOST}")))
+            }
             (NamedMap::Exp(exp), Some(q)) => Ok(NamedMap::Truncated(exp.truncated(q))),
             (map, None) => Ok(map),
             (_, Some(_)) => Err(Error::Unsupported {

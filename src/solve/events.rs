@@ -602,7 +602,30 @@ fn zero(
         let least = f64::EPSILON * near.0.abs().max(far.0.abs()) / (far.0 - near.0).abs();
         s = if least < 0.5 { s.clamp(least, 1.0 - least) } else { 0.5 };
     }
+    if near.1 == 0.0 {
+        return start_of_zeros(near.0, far.0, g);
+    }
     // The side of b, so that the sign after the zero is that of g at b.
     let of_b = |x: (f64, f64)| x.1 == 0.0 || (x.1 > 0.0) == (b.1 > 0.0) && b.1 != 0.0;
     Ok(if of_b(near) { near.0 } else { far.0 })
+}
+
+/// The time from which on g is 0, up to `zero`, where it is 0. At `other`, on the side of the point before, it is not 0.
+fn start_of_zeros(
+    mut zero: f64,
+    mut other: f64,
+    g: &mut dyn FnMut(f64) -> Result<f64, RunError>,
+) -> Result<f64, RunError> {
+    // One look beside a zero tells that it is alone.
+    let beside = (4.0 * f64::EPSILON * zero.abs().max(other.abs())).copysign(other - zero);
+    if beside.abs() >= (other - zero).abs() || g(zero + beside)? != 0.0 {
+        return Ok(zero);
+    }
+    loop {
+        let middle = 0.5 * (zero + other);
+        if middle == zero || middle == other {
+            return Ok(zero);
+        }
+        *(if g(middle)? == 0.0 { &mut zero } else { &mut other }) = middle;
+    }
 }

@@ -244,8 +244,9 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
 
     /// Lets a step end at each of these times, where f or one of its derivatives jumps.
     ///
-    /// Example: the knots of sampled data. f(t) is the value after the jump. The step that ends there evaluates f a few
-    /// rounding units before t, the next step at t. The times may be in any order, and also outside the span.
+    /// Example: the knots of sampled data. f(t) is the value after the jump, in the direction of the run: in a run backward it
+    /// is the value at earlier times. The step that ends there evaluates f a few rounding units before t, the next step at t.
+    /// The times may be in any order, and also outside the span.
     pub fn stops(mut self, times: impl Into<Vec<f64>>) -> Self {
         self.settings.stops = times.into();
         self

@@ -358,6 +358,7 @@ impl<'a, P: Problem, M: Method<P>> Points<'a, P, M> {
     /// y ← the point, like [`change`](Self::change).
     pub(super) fn change_to(&mut self, point: &PointOf<P>) -> Result<(), Error> {
         let problem = self.problem.clone();
+        problem.action().check(problem.group(), point)?;
         self.change(&mut |y| problem.action().assign(problem.group(), point, y))
     }
 }

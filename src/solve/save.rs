@@ -114,7 +114,7 @@ fn read(owner: &str, bytes: &[u8], words: &mut dyn FnMut(&mut Each<'_>)) -> Resu
         return refuse("but it is damaged: its check sum differs");
     }
     if saved.next() != Some(hash(owner.as_bytes()).to_le_bytes()) {
-        return refuse("but it is of another problem, method or choice of steps");
+        return refuse("but it is of another group, method, choice of steps or end of the span");
     }
     // Lists have a length of their own, so the words are counted as they are read.
     let there = bytes.len() / 8 - 3;
@@ -198,7 +198,8 @@ impl Timeline {
             Pacer::ByError(chooser) => format!("{:?}", chooser.control),
         };
         let costs = (self.facts.step.evaluations, self.facts.step.maps);
-        format!("{} {} {costs:?} {pace}", points.group_name(), self.facts.order)
+        let (group, order, end) = (points.group_name(), self.facts.order, self.t1);
+        format!("{group} {order} {costs:?} {pace} to {end:?}")
     }
 
     fn save(&mut self, points: &mut dyn AnyPoints) -> Vec<u8> {
@@ -219,13 +220,14 @@ where
     PointOf<P>: Numbers,
 {
     /// The state as bytes. [`restore`](Self::restore) continues from them with the same results, to the bit. They do not
-    /// contain the problem or the method.
+    /// contain the problem or the method: that the numbers of the problem, the map and the stops are the same is not seen.
     pub fn save(&mut self) -> Vec<u8> {
         self.points.list = Some(Numbers::each_number);
         self.times.save(&mut self.points)
     }
 
-    /// Continues from a state of [`save`](Self::save), of a run with the same problem, method and choice of steps.
+    /// Continues from a state of [`save`](Self::save), of a run with the same problem, method, choice of steps and end of
+    /// the span.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] for bytes that are damaged, of another version of the format or of another run. Then the

@@ -76,6 +76,9 @@ fn t13_events_in_odd_places() {
         near(&find(Box::new(|x| x * (x - 0.05)), None, change), &[(0.0, false), (0.05, true)]);
         // A jump of g is found like a zero.
         near(&find(Box::new(|x| if x < 1.7 { -1.0 } else { 1.0 }), None, change), &[(1.7, true)]);
+        // From where on g is 0, whatever lies between.
+        near(&find(Box::new(|x| (1.7 - x).max(0.0)), None, change), &[(1.7, false)]);
+        near(&find(Box::new(|x| if x < 1.7 { -1.0 } else { 0.0 }), None, change), &[(1.7, true)]);
         // Two that lie between the points that are looked at are found with more points.
         let close = || Box::new(|x: f64| (x - 1.6).powi(2) - 1e-6);
         near(&find(close(), None, change), &[]);

@@ -85,6 +85,30 @@ fn with_out(group: &MatrixGroup, x: &AlgebraMatrix, out: f64) -> AlgebraMatrix {
     v
 }
 
+/// A state that the caller sets is on M, and has its size. Of SL(n) a determinant is looked at in starts only.
+#[test]
+fn a_state_that_is_set_is_on_the_group() {
+    for group in groups() {
+        let still = |_: f64, v: &mut AlgebraMatrix| v.fill(0.0);
+        let flow = Flow::of_time(group.clone(), LeftTranslation, still);
+        let method = Rkmk::new(DOPRI5, Exp);
+        let start = group.identity();
+        let mut run = Solve::new(&flow, &method, [0.0, 1.0]).dt(0.1).integrator(start).unwrap();
+        run.step().unwrap();
+        let n = group.n();
+        let mut twice = group.identity();
+        for i in 0..n {
+            twice[(i, i)] = 2.0;
+        }
+        let smaller = MatrixGroup::so(n - 1).map(|group| group.identity());
+        let twice = (group.name() != "SL(3)").then_some(twice);
+        for wrong in twice.into_iter().chain(smaller) {
+            assert!(run.set_state(&wrong).is_err(), "{}", group.name());
+        }
+        assert_eq!(run.y()[(0, 0)], 1.0);
+    }
+}
+
 #[test]
 fn an_f_that_leaves_the_algebra_ends_the_run() {
     let mut rng = Pcg64::seed_from_u64(7);

@@ -221,6 +221,17 @@ fn bytes_that_are_not_of_this_run_are_refused() {
         assert!(run.restore(&bytes[..length]).is_err(), "{length} bytes");
     }
     assert!(run.restore(&[&bytes[..], &[0; 8]].concat()).is_err(), "more bytes");
+    // A run to another end, or back, is another run: it would never come to the end that was saved.
+    for end in [20.0, 0.1, -10.0] {
+        let run = Solve::new(&body, &method, [0.0, end]).tolerances(1e-8, 1e-8);
+        assert!(run.integrator(START).unwrap().restore(&bytes).is_err(), "to {end}");
+        let last = RefCell::new(Vec::new());
+        let whole = Solve::new(&body, &method, [0.0, 10.0]).tolerances(1e-8, 1e-8);
+        let keep = |bytes: &[u8]| *last.borrow_mut() = bytes.to_vec();
+        whole.checkpoints(Duration::ZERO, keep).run(START).unwrap();
+        let run = Solve::new(&body, &method, [0.0, end]).tolerances(1e-8, 1e-8);
+        assert!(run.resume(last.into_inner()).run(START).is_err(), "to {end}");
+    }
     let mut others = [
         solve(1e-7).integrator(START).unwrap().save(),
         Solve::new(&body, &method, [0.0, 10.0]).dt(0.1).integrator(START).unwrap().save(),

@@ -61,3 +61,17 @@ fn momentum_and_attitude_at_every_reference() {
     }
     assert!(failures.is_empty(), "{failures:?}");
 }
+
+/// The phase of a late time has no digit, and the attitude is a rotation all the same.
+#[test]
+fn a_late_time_is_a_rotation() {
+    for inertia in [[1.0, 2.0, 2.5], [1.0, 1.0, 2.0], [3.0, 2.0, 1.0]] {
+        let motion = Exact::new(inertia, [0.2, 0.3, 1.0], Matrix3::identity()).expect("a body");
+        for t in [1e9, 1e12, 1e14, 1e15, 1e16, 1e18, 1e20, -1e17] {
+            let (m, g) = motion.state(t).expect("a state");
+            let defect = (g.tr_mul(&g) - Matrix3::identity()).norm();
+            assert!(defect < 1e-13, "{inertia:?} at {t:e}: {defect:e}");
+            assert!((m.norm() - 1.13f64.sqrt()).abs() < 1e-13, "{inertia:?} at {t:e}: {m:?}");
+        }
+    }
+}

@@ -8,7 +8,7 @@ use lieflow::catalog::MethodSpec;
 use lieflow::solve::Status;
 use lieflow::{Direction, RunError, SaveAt, Stats, StepControl, TimeGrid};
 use lieflow_model::kinds::own::OwnField;
-use lieflow_model::problem::{Orders, Steps};
+use lieflow_model::problem::{Orders, Steps, stop_after_hardest};
 use lieflow_model::scene::{beside_fixed_steps, default_tolerances};
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
@@ -365,7 +365,8 @@ impl Seen {
             _ => None,
         };
         result.set_item("_tolerances", tolerances)?;
-        result.set_item("_hardest", stats.after_rejection.map(|[end, _]| end))?;
+        let hardest = steps.and_then(|steps| stop_after_hardest(&stats, steps.t_span()));
+        result.set_item("_hardest", hardest)?;
         result.set_item("residual", stats.residual)?;
         result.set_item("restored", stats.restored)?;
         result.set_item("unsure_steps", stats.unsure_steps)?;

@@ -188,7 +188,9 @@ impl Fast {
         let phi = first + second;
         let lost = (first - phi) + second;
         let (s, c) = Trig::sin_cos(phi);
-        (s + c * lost, c - s * lost)
+        // At a large t more is lost than a small angle; the result is a rotation all the same.
+        let (ds, dc) = if lost.abs() < 1e-8 { (lost, 1.0) } else { Trig::sin_cos(lost) };
+        (s * dc + c * ds, c * dc - s * ds)
     }
     /// (sin v, cos v) at τ = 2Kj + r with |r| ≤ K, and the sign of sn and cn.
     #[inline]

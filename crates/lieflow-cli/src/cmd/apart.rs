@@ -1,11 +1,11 @@
 //! How far the rows and the zeros of a run are from those of another motion.
 
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Instant;
 
 use lieflow::solve::Next;
 use lieflow_model::problem::Watcher;
 use lieflow_model::schema::{Component, Observable, Row};
+use lieflow_timing::cpu_seconds;
 
 use super::shown::{OwnRows, OwnZeros, Shown};
 use super::signs::changes_of_sign;
@@ -239,13 +239,14 @@ pub(super) struct Limits<'a> {
     pub(super) cancel: &'a AtomicBool,
     /// The flag that ends all runs.
     pub(super) stop: &'a AtomicBool,
-    pub(super) deadline: Option<Instant>,
+    /// The CPU time at which the run ends.
+    pub(super) deadline: Option<f64>,
 }
 
 impl Limits<'_> {
     /// Cancels the run, if it is time to.
     pub(super) fn look(&self) {
-        let late = self.deadline.is_some_and(|deadline| Instant::now() > deadline);
+        let late = self.deadline.is_some_and(|deadline| cpu_seconds() > deadline);
         if late || self.stop.load(Ordering::Relaxed) {
             self.cancel.store(true, Ordering::Relaxed);
         }

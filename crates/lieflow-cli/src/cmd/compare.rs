@@ -331,8 +331,15 @@ impl Comparison<'_> {
         let reference = self.reference.in_words();
         let off = " The last column is how far a run ends from M, the set of all possible states.";
         let off = if self.curves.iter().any(Curve::leaves) { off } else { "" };
+        let length = match self.curves.iter().any(|curve| curve.candidate.adaptive) {
+            true => {
+                " An rtol is relative to the length of each step: tolerance = \"per-length\" in a scene, atol = 0."
+            }
+            false => "",
+        };
         format!(
-            "Times are CPU times of a whole run without its rows of output.{energy}{off} {reference}"
+            "Times are CPU times of a whole run without its rows of output. Errors are those at the \
+             end.{length}{energy}{off} {reference}"
         )
     }
 

@@ -17,6 +17,7 @@ use crate::error::CliError;
 use crate::output::{self, Drawn, Drift, MethodSummary, RunState, SUMMARY, Summary};
 use lieflow_model::problem::Plan;
 use lieflow_model::scene::{Scene, SceneEvent};
+use lieflow_timing::cpu_seconds;
 
 /// How often the state of a run is saved.
 const SAVED_EVERY: Duration = Duration::from_secs(1);
@@ -204,7 +205,7 @@ pub fn run_scene(
     };
     let summary_path: PathBuf = folder.join(SUMMARY);
     output::remove_summary(folder)?;
-    let clock = Instant::now();
+    let (clock, cpu_clock) = (Instant::now(), cpu_seconds());
     let cancel = AtomicBool::new(false);
     let mut kept =
         Recorder::new(&watch, (folder, Room::new(folder, most)), &columns, [stop, &cancel])?;
@@ -244,7 +245,7 @@ pub fn run_scene(
     let completed = done.failure.is_none();
     // Whatever happens to the second run, the rows of this one are there.
     kept.flush()?;
-    let wall_time_s = clock.elapsed().as_secs_f64();
+    let (wall_time_s, cpu_time) = (clock.elapsed().as_secs_f64(), cpu_seconds() - cpu_clock);
 
     let rows = &kept.rows;
     let mut checked = Ok(None);
@@ -255,7 +256,7 @@ pub fn run_scene(
         let shown = (state.shown()?, written);
         let check = Check::new(&watch, rows, shown, (t, done.taken, done.ended_by.is_some()), stop);
         kept.bar.now(1.0, "a second run, to estimate the error");
-        checked = check_errors(&check, scene, error_check, wall_time_s / share);
+        checked = check_errors(&check, scene, error_check, cpu_time / share);
     }
     let with_time = |(t, row)| {
         let mut line = vec![t];

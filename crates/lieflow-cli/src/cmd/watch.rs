@@ -127,7 +127,7 @@ impl<'a> Watch<'a> {
         match self.model.drive(&scene.method, plan, watcher) {
             Ok(Outcome { t, status, stats, .. }) => Ok(Done {
                 unsure: stats.unsure_in_words("h_max", status.event()),
-                taken: Taken::of(&stats),
+                taken: Taken::of(&stats, scene.grid.t_span()),
                 points_within: Some(stats.points_within),
                 chosen: scene.adaptive.is_some().then_some(Chosen {
                     accepted: stats.accepted,
@@ -307,12 +307,7 @@ impl<'a> Recorder<'a> {
                 for (between, seen) in self.between.iter_mut().zip(&self.seen) {
                     between.see(t, row, seen.count);
                 }
-                for (nearest, angles) in self.singular.iter_mut().zip(&self.watch.written) {
-                    let far = angles.branch.distance_to_singular(&row[*angles]);
-                    if let Some(far) = far.filter(|far| *far < nearest.0) {
-                        *nearest = (far, t);
-                    }
-                }
+                self.see_singular(t, row);
                 self.watch.see(t, row, &mut self.watched);
                 self.rows.see(t, row);
                 self.trajectory.row(None, t, &self.line)?;
@@ -328,6 +323,16 @@ impl<'a> Recorder<'a> {
             state.record(kind, t, row.numbers())?;
         }
         self.room.check(self.bytes())
+    }
+
+    /// How near the Euler angles of a row are to where they are singular.
+    fn see_singular(&mut self, t: f64, row: Row<'_>) {
+        for (nearest, angles) in self.singular.iter_mut().zip(&self.watch.written) {
+            let far = angles.branch.distance_to_singular(&row[*angles]);
+            if let Some(far) = far.filter(|far| *far < nearest.0) {
+                *nearest = (far, t);
+            }
+        }
     }
 
     /// The bytes of all files that grow with the run.
@@ -349,7 +354,7 @@ impl<'a> Recorder<'a> {
                 )),
                 _ if far <= NEAR_SINGULAR => Some(format!(
                     "{name} comes within {degrees} degrees of its singular angle at t = {t}: the first and the third \
-                     angle turn fast there; another sequence or the quaternion does not"
+                     angle turn fast there, and may lose whole turns; another sequence or the quaternion does not"
                 )),
                 _ => None,
             }
@@ -414,6 +419,10 @@ impl Watcher for Recorder<'_> {
     fn end_of_step(&mut self, t: f64, row: Row<'_>) {
         self.watch.see_end_of_step(row, &mut self.watched);
         self.between.iter_mut().for_each(|between| between.see_end_of_step(t, row));
+    }
+
+    fn followed(&mut self, t: f64, row: Row<'_>) {
+        self.see_singular(t, row);
     }
 
     fn progress(&mut self, t: f64) {

@@ -242,6 +242,11 @@ impl Accuracy {
         self.worst().map_or(f64::NAN, |worst| worst.largest.relative)
     }
 
+    /// The largest relative error of a part in the last row.
+    pub fn at_end(&self) -> f64 {
+        self.parts.iter().fold(0.0, |most, part| most.max(part.at_end.relative))
+    }
+
     /// When a row was, as "at t = 6.9" or "at the end".
     pub fn when(&self, t: f64) -> String {
         if t == self.t_end { "at the end".into() } else { format!("at t = {}", number(t)) }

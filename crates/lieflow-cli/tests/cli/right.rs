@@ -372,6 +372,49 @@ fn rows_at_equal_times_are_asked_for_by_their_number_or_their_distance() {
     );
 }
 
+/// A jump of f near the end of a step is not seen by methods without a node there, nor by their halves: the digits that a run
+/// claims are right all the same.
+#[test]
+fn a_jump_at_the_end_of_a_step_is_told() {
+    let folder = Folder::new();
+    let run = |omega: &str, method: &str| {
+        let text = format!(
+            "[problem]\nkind = \"rigid-motion\"\nomega = [\"0\", \"0\", \"{omega}\"]\n\
+             velocity = [\"1\", \"0\", \"0\"]\n[time]\nt_span = [0, 8]\n{method}\n[output]\n\
+             quantities = [\"position\", \"attitude\"]\n"
+        );
+        folder.write("jump.toml", &text);
+        let told = folder.lieflow(&["run", "jump.toml", "--out", "out", "--no-page"]).ok();
+        let (names, rows) = read_csv(&folder.read("out/trajectory.csv"));
+        let last = |name: &str| rows[rows.len() - 1][names.iter().position(|n| n == name).unwrap()];
+        let digits = folder.json("out/summary.json")["accuracy"]["digits"].as_u64().unwrap();
+        (last("g21").atan2(last("g11")), digits as f64, told)
+    };
+    for (t0, method, rtol) in [
+        (6.995, "magnus4", "1e-6"),
+        (3.451, "cf-ees25", "1e-4"),
+        (1.293, "cf-ees25", "1e-8"),
+        (6.995, "cfm4-2", "1e-6"),
+        (2.715, "cg4", "1e-10"),
+        (5.0, "cfm6-5", "1e-6"),
+        (5.848, "cf-ls3", "1e-10"),
+        (2.715, "gauss4", "1e-6"),
+        (4.914, "cfm8-11", "1e-4"),
+        (5.83, "rkmk dopri5", "1e-6"),
+    ] {
+        let (name, tableau) = method.split_once(' ').unwrap_or((method, ""));
+        let tableau = if tableau.is_empty() { "" } else { "tableau = \"dopri5\"\n" };
+        let method = format!("rtol = {rtol}\n[method]\nname = \"{name}\"\n{tableau}");
+        let (angle, digits, told) = run(&format!("(1+sign(t-{t0}))/2"), &method);
+        let error = 2.0 * (0.5 * (angle - (8.0 - t0))).sin().abs();
+        assert!(digits <= 0.7 - error.log10(), "{t0}, {method}: {error:e}, {told}");
+    }
+    // The rows within a step have seen a pulse that its end has not.
+    let pulse = "(sign(t-5.1758)-sign(t-5.1758-0.062))/2";
+    let (angle, digits, told) = run(pulse, "");
+    assert!((angle - 0.062).abs() < 1e-3 || digits <= 1.0 && told.contains("WARNING"), "{told}");
+}
+
 #[test]
 fn settings_change_a_scene() {
     let folder = Folder::new();

@@ -53,6 +53,10 @@ impl Watcher for OfBase<'_> {
         self.fill(t, of_base);
         self.watcher.end_of_step(t, self.mapped.schema.row(&self.numbers));
     }
+    fn followed(&mut self, t: f64, of_base: Row<'_>) {
+        self.fill(t, of_base);
+        self.watcher.followed(t, self.mapped.schema.row(&self.numbers));
+    }
     fn progress(&mut self, t: f64) {
         self.watcher.progress(t);
     }

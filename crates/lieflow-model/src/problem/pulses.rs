@@ -1,10 +1,21 @@
 //! The search for short pulses. Steps that are chosen by their error can pass over a pulse of f: no stage is within it, so the
 //! error of a step shows nothing. A run in short steps looks for it.
 
+use lieflow::Stats;
+
 /// The number of steps of the same size that a run in short steps takes at least.
 pub const SHORT_STEPS: u64 = 2000;
 /// The time in seconds that the search may take, where the run itself took less.
 const SEARCH: f64 = 0.3;
+
+/// The time at which a second run ends a step, so that it sees a short pulse that a run has seen: half a step after the end of
+/// the smallest step that followed a rejected attempt ([`Stats::after_rejection`]). A run that ended a step there itself would
+/// have the nodes of the first one, and would be as blind to a jump at the end of that step.
+pub fn stop_after_hardest(stats: &Stats, [t0, t1]: [f64; 2]) -> Option<f64> {
+    let [end, size] = stats.after_rejection?;
+    let stop = end + 0.5 * size.copysign(t1 - t0);
+    (if t1 > t0 { stop < t1 } else { stop > t1 }).then_some(stop)
+}
 
 /// The time in seconds that the search may take, after a run of `steps` steps in `seconds` seconds. `None` if the search
 /// would take longer.

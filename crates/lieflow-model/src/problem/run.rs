@@ -208,6 +208,8 @@ pub trait Watcher {
     fn event(&mut self, _event: usize, _t: f64, _rising: bool, _row: Row<'_>) {}
     /// The end of a step that had rows within it, after these.
     fn end_of_step(&mut self, _t: f64, _row: Row<'_>) {}
+    /// A point at which the choices of values ([`Branch`](crate::schema::Branch)) are followed.
+    fn followed(&mut self, _t: f64, _row: Row<'_>) {}
     /// The time that the run has reached. Called now and then.
     fn progress(&mut self, _t: f64) {}
     /// The state, to go on from.
@@ -463,10 +465,14 @@ pub(crate) fn drive_by<P: Runnable>(
         });
     }
     let (fill, numbers) = (&fill, &numbers);
+    let follow = &|t: f64, y: &PointOf<P>| {
+        fill(t, y);
+        watcher.borrow_mut().followed(t, schema.row(&numbers.borrow()));
+    };
     if !branches.borrow().is_empty() {
         let least = gap.map_or(0.0, |gap| 1.0 / gap);
         let rate = move |t: f64, y: &PointOf<P>| turn_rate(t, y).max(least);
-        solve = solve.event(following(fill, rate, [t1 > t0, is_long]));
+        solve = solve.event(following(follow, rate, [t1 > t0, is_long]));
     }
     for (index, event) in events.into_iter().enumerate() {
         let EventPlan { name, value, direction, stop_after, points, change, .. } = event;

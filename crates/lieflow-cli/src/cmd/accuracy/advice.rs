@@ -1,6 +1,6 @@
 //! What is said of an inaccurate run, and the change that would help.
 
-use std::time::{Duration, Instant};
+use lieflow_timing::cpu_seconds;
 
 use super::{Check, LONG, OWN, Way};
 use crate::output::{Accuracy, Distance, FoundBy, number, rough};
@@ -39,7 +39,7 @@ impl Check<'_> {
         let wrong = format!("`{}` is wrong by {off} {when}: this run is {verdict}.", worst.name);
         let Some(seconds) = seconds else { return Some(wrong) };
         let patience = PATIENCE[0].max(PATIENCE[1] * seconds.min(LONG.as_secs_f64()));
-        let until = Instant::now() + Duration::from_secs_f64(patience);
+        let until = cpu_seconds() + patience;
         self.deadline.set(Some(until));
         let mut times = self.sample.clone();
         // In the direction of the run.
@@ -92,7 +92,7 @@ impl Check<'_> {
     }
 
     /// Smaller steps of the same method that would do at these times, and the digits that they give.
-    fn smaller_steps(&self, until: Instant, seconds: f64, times: &[f64]) -> Option<String> {
+    fn smaller_steps(&self, until: f64, seconds: f64, times: &[f64]) -> Option<String> {
         let h = self.scene().grid.h().abs();
         let tolerances = self.scene().tolerances();
         let factors: Vec<f64> = match tolerances {
@@ -101,7 +101,7 @@ impl Check<'_> {
         };
         let mut best = None;
         for factor in factors {
-            let left = until.saturating_duration_since(Instant::now()).as_secs_f64();
+            let left = until - cpu_seconds();
             let longer = if tolerances.is_none() { factor.recip() } else { 1.0 };
             if longer * seconds > left {
                 break;

@@ -11,9 +11,12 @@ use lieflow::SaveAt;
 use lieflow::catalog::MethodSpec;
 use lieflow::problems::explained_by_rounding;
 use lieflow::solve::{Next, Stats, Status};
-use lieflow_model::problem::{Outcome, Plan, SHORT_STEPS, Watcher, time_to_search};
+use lieflow_model::problem::{
+    Outcome, Plan, SHORT_STEPS, Watcher, stop_after_hardest, time_to_search,
+};
 use lieflow_model::scene::Scene;
 use lieflow_model::schema::{Component, Observable, Row};
+use lieflow_timing::cpu_seconds;
 
 use super::apart::{Apart, Beside, Gap, Largest, Limits, ZerosApart, norm, parts_of};
 use super::shown::{Choice, Shown};
@@ -29,8 +32,8 @@ const MISJUDGED: f64 = 3.0;
 /// The time of a run below this many seconds says nothing: another program may have held it up. Then a run in short steps is
 /// begun in any case, and ends at its deadline.
 const BRIEF: f64 = 0.015;
-/// A run in short steps that ends this many estimated errors away has found something that the run did not see.
-const PASSED_OVER: f64 = 1e3;
+/// A run in short steps that ends this many estimated errors of the end away has found something that the run did not see.
+const PASSED_OVER: f64 = 30.0;
 /// A motion that makes this of the last digits of its start is worth a warning.
 const AMPLIFIED: f64 = 1e-8;
 /// A tolerance this small is compared with a larger one: a smaller one is rounding.
@@ -61,7 +64,8 @@ pub(super) struct Check<'a> {
     sample: Vec<f64>,
     /// The last row.
     last: Vec<f64>,
-    deadline: Cell<Option<Instant>>,
+    /// The CPU time at which a run ends.
+    deadline: Cell<Option<f64>>,
 }
 
 /// What is known of the errors of a run.
@@ -97,17 +101,17 @@ pub(super) struct Taken {
     pub(super) steps: u64,
     /// The largest of them.
     pub(super) largest: f64,
-    /// The end of the smallest step that followed a rejected attempt.
+    /// Where a second run ends a step ([`stop_after_hardest`]).
     pub(super) hardest: Option<f64>,
 }
 
 impl Taken {
-    /// The steps of these statistics.
-    pub(super) fn of(stats: &Stats) -> Self {
+    /// The steps of these statistics of a run over this span.
+    pub(super) fn of(stats: &Stats, t_span: [f64; 2]) -> Self {
         Taken {
             steps: stats.accepted,
             largest: stats.largest_step,
-            hardest: stats.after_rejection.map(|[end, _]| end),
+            hardest: stop_after_hardest(stats, t_span),
         }
     }
 }
@@ -227,9 +231,9 @@ impl<'a> Check<'a> {
         (self.scene().tolerances().is_some() && 2.0 * short < self.own.largest).then_some(short)
     }
 
-    /// The distance of the last row from that of a run in short steps, with a warning, where the steps of both runs
-    /// not seen something, such as a short pulse. Neither run evaluates f within the pulse, so the error of a step
-    /// shows nothing. Only the last row is compared: a pulse whose effect dies out before it is not seen.
+    /// The distance of the last row from that of a run in short steps, with a warning, where the steps of both runs have not
+    /// seen something, such as a short pulse, or a jump near the end of a step. Neither run evaluates f there, so the error of
+    /// a step shows nothing. Only the last row is compared: a pulse whose effect dies out before it is not seen.
     fn passed_over(&self, known: &Accuracy, seconds: f64) -> Option<(Accuracy, String)> {
         let clock = Instant::now();
         let (short, end) = (self.short_step()?, self.end());
@@ -239,7 +243,7 @@ impl<'a> Check<'a> {
         }
         let way = Way { largest: Some(short), ..OWN };
         // The estimate of its time may be wrong: within a pulse f may be dear, or steps small.
-        self.deadline.set(Some(clock + Duration::from_secs_f64(most * MISJUDGED)));
+        self.deadline.set(Some(cpu_seconds() + most * MISJUDGED));
         let found = self.rows_at(way, &[end]);
         self.deadline.set(None);
         let (rows, taken) = found.ok()?;
@@ -247,13 +251,13 @@ impl<'a> Check<'a> {
         let apart = Apart::of_rows(self.watch, &self.run.sizes, pair.into_iter());
         let found = self.judge(FoundBy::ShortSteps, &apart, 1.0, clock);
         let rounding = explained_by_rounding(taken.steps, 1.0);
-        let is_far = found.relative() > PASSED_OVER * known.relative().max(rounding);
+        let is_far = found.relative() > PASSED_OVER * known.at_end().max(rounding);
         is_far.then(|| {
             let name = found.worst().map_or("", |worst| &worst.name);
             let short = number(short);
             let warning = format!(
                 "in steps of at most {short} `{name}` ends elsewhere: the steps of this run, of up to {}, \
-                 pass over something short, such as a pulse. Give h_max = {short} in [time], or less",
+                 pass over something short, such as a pulse or a jump. Give h_max = {short} in [time], or less",
                 number(self.own.largest)
             );
             (found, warning)
@@ -339,7 +343,7 @@ impl<'a> Check<'a> {
         let outcome = self.watch.model.drive(&self.method(way), plan, &mut kept);
         let Outcome { status, stats, .. } = outcome.map_err(|error| error.to_string())?;
         match status {
-            Status::Finished => Ok((kept.rows, Taken::of(&stats))),
+            Status::Finished => Ok((kept.rows, Taken::of(&stats, self.run.t_span))),
             _ => Err("it was stopped".into()),
         }
     }
