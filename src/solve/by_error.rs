@@ -127,9 +127,10 @@ impl Timeline {
                     let Pacer::ByError(chooser) = &mut self.pacer else { return Ok(()) };
                     let passed = |wall: &f64| if forward { end >= *wall } else { end <= *wall };
                     chooser.wall = chooser.wall.filter(|wall| !passed(wall));
-                    chooser.controller.hold |= chooser.wall.is_some();
                     let factor = chooser.controller.accept(ratio);
-                    let next = size * factor;
+                    // A step grows to half the way to the wall at most.
+                    let way = chooser.wall.map_or(f64::INFINITY, |wall| 0.5 * (wall - end).abs());
+                    let next = (size * factor).min(way.max(size));
                     // A step that was shortened to end at `stop` says nothing against the size before, and one that
                     // goes half the way nothing against the other half.
                     chooser.h = Some(match size / h {

@@ -425,3 +425,30 @@ fn an_ellipsoid_has_the_energy() {
         assert!((axis * axis / (2.0 * j) - energy).abs() < 1e-15);
     }
 }
+
+/// After an attempt whose iteration failed, and a kink of f behind it, the steps grow again.
+#[test]
+fn a_kink_after_a_failed_attempt_does_not_hold_the_steps() {
+    for (omega, method) in [
+        ("min(1, max(0, t - 4.092))", "gauss4"),
+        ("(1 + sign(t - 5))/2", "gauss4"),
+        ("min(1, max(0, t - 4.092))", "gauss6"),
+        ("min(1, max(0, t - 4.092))", "midpoint-implicit"),
+    ] {
+        for rtol in ["1e-4", "1e-6"] {
+            let text = format!(
+                "[problem]\nkind = \"rigid-motion\"\nomega = [\"0\", \"0\", \"{omega}\"]\n\
+                 velocity = [\"1\", \"0\", \"0\"]\n[method]\nname = \"{method}\"\n[time]\n\
+                 t_span = [0, 8]\nrtol = {rtol}\nmax_steps = 2000\n"
+            );
+            let scene = Scene::parse("rest", &text).unwrap();
+            let model = scene.model().unwrap();
+            let mut steps = 0;
+            let mut sink = |_: f64, _: Row<'_>| steps += 1;
+            let plan = scene.plan(model.schema()).unwrap();
+            let mut rows = lieflow_model::problem::Rows(&mut sink);
+            let done = model.drive(&scene.method, plan, &mut rows);
+            assert!(done.is_ok(), "{omega}, {method}, {rtol}: {steps} steps, {done:?}");
+        }
+    }
+}
