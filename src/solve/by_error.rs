@@ -15,6 +15,9 @@ const REJECTIONS_MAX: u32 = 60;
 /// An exact step with events, or without an end, turns by so many radian.
 const EXACT_TURN: f64 = 1.0;
 
+/// Before a wall, a step that is larger than this part of the way there does not grow.
+const NEAR_WALL: f64 = 0.01;
+
 /// The size, the wall and the controller of a [`Chooser`].
 type Choice = (Option<f64>, Option<f64>, Controller);
 
@@ -127,10 +130,10 @@ impl Timeline {
                     let Pacer::ByError(chooser) = &mut self.pacer else { return Ok(()) };
                     let passed = |wall: &f64| if forward { end >= *wall } else { end <= *wall };
                     chooser.wall = chooser.wall.filter(|wall| !passed(wall));
+                    let is_near = |wall: f64| size > NEAR_WALL * (wall - end).abs();
+                    chooser.controller.hold |= chooser.wall.is_some_and(is_near);
                     let factor = chooser.controller.accept(ratio);
-                    // A step grows to half the way to the wall at most.
-                    let way = chooser.wall.map_or(f64::INFINITY, |wall| 0.5 * (wall - end).abs());
-                    let next = (size * factor).min(way.max(size));
+                    let next = size * factor;
                     // A step that was shortened to end at `stop` says nothing against the size before, and one that
                     // goes half the way nothing against the other half.
                     chooser.h = Some(match size / h {

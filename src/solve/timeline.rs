@@ -31,7 +31,8 @@ pub(super) struct Chooser {
     pub(super) controller: Controller,
     /// The size of the next attempt, without its sign; `None` before the first step.
     pub(super) h: Option<f64>,
-    /// The end of the last step that failed, until the run has passed it. Steps grow to half the way there at most.
+    /// The end of the last step that failed, until the run has passed it. Steps grow only while they are short beside
+    /// the way there.
     pub(super) wall: Option<f64>,
     /// True if the run has events. Exact steps are then short enough to show them.
     pub(super) has_events: bool,
