@@ -71,25 +71,20 @@ impl<const S: usize> Increment<S> {
     fn has_bracket(&self) -> bool {
         self.x.iter().any(|x| *x != 0.0)
     }
+    /// The number of stages up to the last one that the increment has.
+    const fn stages(&self) -> usize {
+        let mut s = S;
+        while s > 1 && self.w[s - 1] == 0.0 && self.x[s - 1] == 0.0 {
+            s -= 1;
+        }
+        s
+    }
 }
 
 impl<const S: usize> OneBracketTableau<S> {
     /// The number of stages of the update: S, or fewer for a [`padded`](Self::padded) method.
     pub const fn stages(&self) -> usize {
-        let mut s = S;
-        while s > 1 && self.update.w[s - 1] == 0.0 && self.update.x[s - 1] == 0.0 {
-            s -= 1;
-        }
-        s
-    }
-
-    /// The number of stages that this increment has after those of the update.
-    const fn more_stages(&self, increment: &Increment<S>) -> u64 {
-        let mut s = S;
-        while s > self.stages() && increment.w[s - 1] == 0.0 && increment.x[s - 1] == 0.0 {
-            s -= 1;
-        }
-        (s - self.stages()) as u64
+        self.update.stages()
     }
 
     /// This method with room for N ≥ S stages. The added stages are never evaluated.
@@ -271,8 +266,8 @@ where
         };
         let step = cost(stages, brackets);
         let step_with_error = self.0.embedded.map_or(step, |(_, increment)| {
-            let more = self.0.more_stages(&increment);
-            cost(stages + more, brackets + u64::from(increment.has_bracket()))
+            let stages = stages.max(increment.stages() as u64);
+            cost(stages, brackets + u64::from(increment.has_bracket()))
         });
         let facts = Facts::of_order(self.0.order)
             .estimate(self.0.name, self.0.embedded.map(|(order, _)| order))
@@ -379,7 +374,7 @@ where
         };
         // u is v again at the end, for dense output.
         core::mem::swap(&mut inner.stages.u, &mut inner.v);
-        for i in table.stages()..table.stages() + table.more_stages(embedded) as usize {
+        for i in table.stages()..embedded.stages() {
             done = done.and_then(|()| inner.stage(table, problem, step, from, i));
         }
         done.map_err(|error| inner.stages.blame(problem, error))?;

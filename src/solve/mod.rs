@@ -15,6 +15,7 @@
 //! Steps do not grow until time has passed the end of the failed step. So at a point that cannot be passed each halving
 //! costs one rejection. With a fixed step size a step that fails ends the run.
 
+mod bracket;
 mod by_error;
 mod continuous;
 mod control;

@@ -1,5 +1,6 @@
 //! Problems, whatever their kind: what a kind states, and a model of it that any method runs on.
 
+mod following;
 mod forms;
 mod keys;
 mod kind;

@@ -29,8 +29,8 @@ pub(super) const LONG: Duration = Duration::from_secs(10);
 const SAMPLE: usize = 100;
 /// The search for a short pulse is given up after this many times the time that it may take.
 const MISJUDGED: f64 = 3.0;
-/// The time of a run below this many seconds says nothing: another program may have held it up. Then a run in short steps is
-/// begun in any case, and ends at its deadline.
+/// The CPU time of a run below this many seconds says little of that of another. Then a run in short steps is begun in any
+/// case, and ends at its deadline.
 const BRIEF: f64 = 0.015;
 /// A run in short steps that ends this many estimated errors of the end away has found something that the run did not see.
 const PASSED_OVER: f64 = 30.0;
