@@ -377,3 +377,24 @@ def test_the_default_tolerances_know_the_unit_of_a_small_body(unit):
     m0 = unit * np.array([0.1, 2.0, 0.0])
     r = lf.solve_ivp(f, (0, 50), m0, group="SO(3)", action="coadjoint", t_eval=[50.0])
     assert np.abs(r.y / (unit * np.array([1.0, 2.0, 2.5])) - exact).max() < 1e-9, unit
+
+
+@pytest.mark.parametrize("end", [40.0, -40.0])
+@pytest.mark.parametrize("steps", [{"method": "rkmk4 exp", "dt": 0.1}, {"method": "rkmk dopri5 exp"}, {}])
+def test_dense_output_follows_the_turns_of_rows(end, steps):
+    """A body that turns 64 times about z: rows at a few times and the curve have the same angles and signs."""
+    body = lf.RigidBody(inertia=[1, 1, 2], omega_body=[0.1, 0.0, 10.0])
+    stop = lf.Event(lambda t, y: abs(t) - 20.125, change=lambda t, numbers: numbers)
+    asked = {"quantities": ["momentum_body", "attitude", "euler_zyx", "quaternion"], "dense_output": True, **steps}
+    times = np.linspace(0, end, 4001)
+    for events in ([], [stop]):
+        run = lf.solve_ivp(body, (0, end), t_eval=times, events=events, **asked)
+        few = lf.solve_ivp(body, (0, end), t_eval=times[::500], events=events, **asked)
+        turned = np.abs(run.euler_zyx[:, 0] - run.euler_zyx[0, 0]).max()
+        assert turned > 390
+        assert np.abs(np.diff(run.quaternion, axis=0)).max() < 0.1
+        for sol in (run.sol, few.sol, pickle.loads(pickle.dumps(few.sol))):
+            at = sol(times)
+            assert np.abs(at.euler_zyx - run.euler_zyx).max() < 1e-9, (steps, end)
+            assert np.abs(at.quaternion - run.quaternion).max() < 1e-9, (steps, end)
+        assert np.abs(few.euler_zyx - run.euler_zyx[::500]).max() < 1e-9

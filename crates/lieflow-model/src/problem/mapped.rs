@@ -143,10 +143,10 @@ impl RowCurve for MappedCurve {
     }
     fn rows(&self, times: &[f64], values: &mut Vec<f64>) -> Result<(), (usize, RunError)> {
         let mut of_base = Vec::new();
+        self.curve.rows(times, &mut of_base)?;
+        let width = self.map.base.columns().count();
         for (i, &t) in times.iter().enumerate() {
-            of_base.clear();
-            self.curve.rows(&[t], &mut of_base).map_err(|(_, error)| (i, error))?;
-            self.map.append(t, &of_base, values);
+            self.map.append(t, &of_base[i * width..][..width], values);
         }
         Ok(())
     }

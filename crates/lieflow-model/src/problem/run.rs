@@ -302,6 +302,7 @@ pub(crate) struct RowsOf<'a, P: Runnable> {
 struct CurveOf<P: Runnable> {
     points: Interpolant<'static, P, AnyMethod<'static, P>>,
     row_of: Box<SharedRowOf<P>>,
+    branches: Branches,
 }
 
 impl<P: Runnable> RowCurve for CurveOf<P> {
@@ -314,12 +315,18 @@ impl<P: Runnable> RowCurve for CurveOf<P> {
     fn rows(&self, times: &[f64], values: &mut Vec<f64>) -> Result<(), (usize, RunError)> {
         let mut reader = self.points.reader().map_err(|error| (0, error.into()))?;
         for (i, &t) in times.iter().enumerate() {
+            let row = values.len();
             (self.row_of)(t, reader.at(t).map_err(|error| (i, error))?, values);
+            self.branches.follow_known(t, &mut values[row..]);
         }
         Ok(())
     }
+    /// Those of the points, those of the choices, and how many the last are.
     fn numbers(&self) -> Vec<f64> {
-        self.points.numbers()
+        let (mut numbers, choices) = (self.points.numbers(), self.branches.numbers());
+        numbers.extend_from_slice(&choices);
+        numbers.push(choices.len() as f64);
+        numbers
     }
 }
 
@@ -332,12 +339,19 @@ pub(crate) fn curve_by<P: Runnable>(
     problem: &Arc<P>,
     like: &PointOf<P>,
     numbers: &[f64],
+    schema: &Schema,
     shared: &dyn Fn(f64) -> Box<SharedRowOf<P>>,
 ) -> Result<Box<dyn RowCurve>, Error> {
     let method = Arc::new(problem.method(spec)?);
+    let (choices, numbers) = numbers
+        .split_last()
+        .map_or((0, numbers), |(&choices, numbers)| (choices as usize, numbers));
+    let (numbers, choices) = numbers.split_at(numbers.len().saturating_sub(choices));
     let points = Interpolant::from_numbers(problem.clone(), method, like, numbers)?;
+    let mut branches = Branches::new(schema, points.t_span());
+    branches.set_numbers(choices);
     let row_of = shared(points.t_span()[0]);
-    Ok(Box::new(CurveOf { points, row_of }))
+    Ok(Box::new(CurveOf { points, row_of, branches }))
 }
 
 /// Integrate `problem` from `y` by the method that `spec` names: see [`Model::drive`](super::Model::drive).
@@ -358,6 +372,9 @@ pub(crate) fn drive_by<P: Runnable>(
     let (watcher, numbers) = (RefCell::new(watcher), RefCell::new(Vec::new()));
     let mut branches = Branches::new(schema, steps.t_span());
     let resume = resume.map(|bytes| branches.take_from(bytes));
+    if curve.is_some() {
+        branches.keep_all();
+    }
     let branches = RefCell::new(branches);
     let fill = |t: f64, y: &PointOf<P>| {
         let mut numbers = numbers.borrow_mut();
@@ -448,9 +465,10 @@ pub(crate) fn drive_by<P: Runnable>(
         None => solve.run_with(y, see),
         Some(CurvePlace(place)) => {
             let (done, points) = solve.run_interpolant_with(y, see);
-            let curve =
-                |points| Box::new(CurveOf { points, row_of: shared() }) as Box<dyn RowCurve>;
-            *place = points.into_shared().map(curve);
+            *place = points.into_shared().map(|points| {
+                let branches = branches.borrow().clone().of_run();
+                Box::new(CurveOf { points, row_of: shared(), branches }) as Box<dyn RowCurve>
+            });
             done
         }
     };

@@ -272,7 +272,8 @@ impl<S: System> Run for On<S> {
         numbers: &[f64],
     ) -> Result<Box<dyn RowCurve>, Error> {
         let (problem, like) = self.ready()?;
-        curve_by(method, problem, like, numbers, &|t0| self.shared(asked.quantities, t0))
+        let shared = |t0: f64| self.shared(asked.quantities, t0);
+        curve_by(method, problem, like, numbers, asked.schema, &shared)
     }
     fn exact(&self, asked: Asked<'_>, t_span: [f64; 2]) -> Option<Result<Vec<f64>, Error>> {
         let mut values = Vec::with_capacity(asked.schema.numbers());

@@ -162,6 +162,11 @@ impl Known {
         self.values.clear();
         self.add(moment, values);
     }
+    /// The points of a later step, too.
+    fn append(&mut self, later: &Known) {
+        self.moments.extend_from_slice(&later.moments);
+        self.values.extend_from_slice(&later.values);
+    }
 }
 
 /// The columns with choices, and their values in the last step.
@@ -180,6 +185,8 @@ pub(crate) struct Branches {
     end: Vec<f64>,
     /// The known points from the start of the step on.
     known: Known,
+    /// The known points of all steps before, if they are kept.
+    before: Option<Known>,
     /// The values of a point, as they are followed.
     values: Vec<f64>,
     /// The values at the start of a step.
@@ -197,9 +204,32 @@ impl Branches {
             front: f64::NAN,
             end: Vec::new(),
             known: Known::default(),
+            before: None,
             values: Vec::new(),
             start: Vec::new(),
         }
+    }
+
+    /// Keeps the known points of all steps, for [`of_run`](Self::of_run).
+    pub(crate) fn keep_all(&mut self) {
+        self.before = Some(Known::default());
+    }
+
+    /// The choices of a whole run that kept its points.
+    pub(crate) fn of_run(mut self) -> Self {
+        self.known = self.before.take().map_or(Known::default(), |mut all| {
+            all.append(&self.known);
+            all
+        });
+        self
+    }
+
+    /// The step ends at this point, where the next one starts.
+    fn restart(&mut self, moment: Moment, values: &[f64]) {
+        if let Some(before) = &mut self.before {
+            before.append(&self.known);
+        }
+        self.known.restart(moment, values);
     }
 
     /// True if no value has a choice.
@@ -207,7 +237,12 @@ impl Branches {
         self.columns.is_empty()
     }
 
-    /// The values of all columns with choices in a row.
+    /// The places of all columns with choices in a row.
+    fn places(&self) -> impl Iterator<Item = usize> {
+        self.columns.iter().flat_map(|(_, places)| places.clone())
+    }
+
+    /// The number of these columns.
     fn count(&self) -> usize {
         self.columns.iter().map(|(_, places)| places.len()).sum()
     }
@@ -240,9 +275,8 @@ impl Branches {
             return;
         }
         let mut values = core::mem::take(&mut self.values);
-        let places = || self.columns.iter().flat_map(|(_, places)| places.clone());
         values.clear();
-        values.extend(places().map(|place| numbers[place]));
+        values.extend(self.places().map(|place| numbers[place]));
         let has_values = values.iter().all(|x| x.is_finite());
         if self.front.is_nan() || self.is_after(t, self.front) {
             if !self.front.is_nan() && !self.end.is_empty() {
@@ -250,7 +284,7 @@ impl Branches {
                 core::mem::swap(&mut start, &mut self.end);
                 self.end.clear();
                 self.choose(self.front, &mut start);
-                self.known.restart(self.moment(self.front), &start);
+                self.restart(self.moment(self.front), &start);
                 self.start = start;
             }
             self.front = t;
@@ -260,7 +294,7 @@ impl Branches {
             }
         }
         let is_far = self.choose(t, &mut values);
-        for (place, value) in places().zip(&values) {
+        for (place, value) in self.places().zip(&values) {
             numbers[place] = *value;
         }
         if is_far && has_values && !self.known.moments.is_empty() && t != self.front {
@@ -271,10 +305,34 @@ impl Branches {
 
     /// Ends the step at t, where the numbers are these: what comes next starts there.
     pub(crate) fn cut(&mut self, t: f64, numbers: &[f64]) {
-        let places = self.columns.iter().flat_map(|(_, places)| places.clone());
-        self.end = places.map(|place| numbers[place]).collect();
-        self.known.restart(self.moment(t), &self.end);
-        self.front = t;
+        let end: Vec<f64> = self.places().map(|place| numbers[place]).collect();
+        self.restart(self.moment(t), &end);
+        (self.end, self.front) = (end, t);
+    }
+
+    /// numbers ← the row at any t of a run whose points are all known.
+    pub(crate) fn follow_known(&self, t: f64, numbers: &mut [f64]) {
+        let mut values: Vec<f64> = self.places().map(|place| numbers[place]).collect();
+        self.choose(t, &mut values);
+        for (place, value) in self.places().zip(values) {
+            numbers[place] = value;
+        }
+    }
+
+    /// The known points as numbers.
+    pub(crate) fn numbers(&self) -> Vec<f64> {
+        let all = self.known.values.chunks_exact(self.count().max(1)).zip(&self.known.moments);
+        all.flat_map(|(values, moment)| [&[moment.time()], values].concat()).collect()
+    }
+
+    /// Knows the points of these [`numbers`](Self::numbers), too.
+    pub(crate) fn set_numbers(&mut self, numbers: &[f64]) {
+        for point in numbers.chunks_exact(self.count() + 1) {
+            self.known.append(&Known {
+                moments: vec![Moment::of(point[0])],
+                values: point[1..].to_vec(),
+            });
+        }
     }
 
     /// The state of a run: that of its driver, and the values of the last step after it.
