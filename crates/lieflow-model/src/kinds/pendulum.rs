@@ -65,7 +65,7 @@ impl System for Pendulum {
             row.extend(omega.iter())
         }),
         Q::number("energy", "energy", |pendulum, _, y| pendulum.pendulum.energy(y))
-            .kept_where(|pendulum| law_of(&pendulum.pendulum, "energy"))
+            .kept(Law::by_the_flow(2))
             .in_terms(|pendulum, (omega, q)| {
                 0.5 * omega.norm_squared() + pendulum.rate2.abs() * q.norm()
             }),
@@ -74,16 +74,16 @@ impl System for Pendulum {
             "angular momentum about the vertical",
             |_, _, (omega, _)| omega[2],
         )
-        .kept_where(|pendulum| law_of(&pendulum.pendulum, "ω₃"))
+        .kept(Law::by_the_flow(1))
         .in_terms(|_, (omega, q)| omega.norm() * q.norm()),
         Q::number("direction_norm2", "square of the length of the direction", |_, _, (_, q)| {
             q.norm_squared()
         })
-        .kept_where(|pendulum| law_of(&pendulum.pendulum, "|q|²")),
+        .kept(Law::by_the_action(2)),
         Q::number("omega_along", "angular velocity along the rod, 0", |_, _, (omega, q)| {
             omega.dot(q)
         })
-        .kept_where(|pendulum| law_of(&pendulum.pendulum, "ω·q"))
+        .kept(Law::by_the_action(2))
         .in_terms(|_, (omega, q)| omega.norm() * q.norm()),
     ];
 

@@ -5,7 +5,7 @@ pub(super) use lieflow::Error;
 
 pub(super) use crate::problem::{
     Counting, Figure, Forms, Kind, Layer, PrincipalInertia, Property, Quantity, Start, System,
-    counting, formula_keys, keys, law_of, sample_keys,
+    counting, formula_keys, keys, sample_keys,
 };
 pub(super) use crate::reader::values::{List, Real, Reals, Table, Whole};
 pub(super) use crate::reader::{

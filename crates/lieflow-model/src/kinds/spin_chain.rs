@@ -296,11 +296,11 @@ impl Chain {
             false => OnSpheres::lie_poisson(spins, Linear),
         })
     }
-    /// A law of the library's problem; by formulas, this one without damping.
-    fn law(&self, invariant: &str, by_formulas: Law) -> Option<Law> {
+    /// True if a turn of all spins about e₃ changes nothing.
+    fn turns_about_e3(&self) -> bool {
         match &self.of {
-            Of::Numbers(chain, _) => law_of(chain, invariant),
-            Of::Formulas(_) => (self.damping == 0.0).then_some(by_formulas),
+            Of::Numbers(_, field) => field.x == 0.0 && field.y == 0.0,
+            Of::Formulas(stated) => stated.turns_about_e3(),
         }
     }
     fn energy(&self, s: &[Vector3<f64>]) -> f64 {
@@ -351,16 +351,13 @@ impl System for Chain {
         Q::number("energy", "energy, where no coupling depends on t", |chain, _, s| {
             chain.energy(s)
         })
-        .kept_where(|chain| chain.law("energy", Law::by_the_flow(2)))
+        .kept_where(|chain| (chain.damping == 0.0).then_some(Law::by_the_flow(2)))
         .in_terms(|chain, s| chain.size(s))
         .missing_where(|chain| chain.in_time().then_some("its couplings depend on t")),
         Q::number("total_spin3", "sum of the third components", |_, _, s| sum(s)[2])
             .kept_where(|chain| {
-                let turns = match &chain.of {
-                    Of::Numbers(..) => true,
-                    Of::Formulas(stated) => stated.turns_about_e3(),
-                };
-                chain.law("Σ(s_i)₃", Law::by_the_flow(1)).filter(|_| turns)
+                let is_kept = chain.damping == 0.0 && chain.turns_about_e3();
+                is_kept.then_some(Law::by_the_flow(1))
             })
             .in_terms(|chain, s| chain.size(s)),
         Q::number("lengths2", "sum of the squares of the lengths", |_, _, s| sum_of_squares(s))

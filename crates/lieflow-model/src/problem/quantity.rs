@@ -1,8 +1,6 @@
 //! What can be asked of a problem: every quantity is stated once, with its columns, its meaning, its value and
 //! the law that it obeys.
 
-use lieflow::problems::Invariants;
-
 use super::kind::{Kept, QuantityInfo};
 use super::system::{PointOf, System};
 use crate::schema::{Branch, Component, Dimension, Law, Measure, Numbers, Scale};
@@ -22,12 +20,6 @@ enum Columns<S> {
     Matrix(&'static str, fn(&S) -> [usize; 2]),
     /// The entries of several matrices of one size, one matrix after the other: a letter of each, and the size.
     Matrices(fn(&S) -> (&'static [&'static str], [usize; 2])),
-}
-
-/// The law of an invariant of the library's problem. None if this problem does not have the invariant.
-pub(crate) fn law_of(problem: &impl Invariants, invariant: &str) -> Option<Law> {
-    let mut all = problem.invariants().into_iter();
-    all.find(|known| known.name == invariant).map(|known| known.law)
 }
 
 /// When a value is asked for.

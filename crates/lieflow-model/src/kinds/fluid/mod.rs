@@ -110,11 +110,11 @@ impl System for Fluid {
         )
         .with_columns(|fluid| fluid.fluid.surface().coefficient_names()),
         Q::number("energy", "kinetic energy", |fluid, _, w| fluid.fluid.energy(w))
-            .kept_where(|fluid| law_of(&fluid.fluid, "energy")),
+            .kept(Law::by_the_flow(2)),
         Q::number("enstrophy", "half the mean of the vorticity's square", |fluid, _, w| {
             fluid.fluid.enstrophy(w)
         })
-        .kept_where(|fluid| law_of(&fluid.fluid, "enstrophy")),
+        .kept(Law::by_the_action(2)),
         Q::numbers(
             "levels",
             &["level1", "…", "levelN"],
