@@ -9,7 +9,7 @@ use lieflow::groups::{MatrixGroup, So3};
 use lieflow::maps::{CCSK, CCSK123, Cay, Exp};
 use lieflow::methods::commutator_free::{CF4, CF43};
 use lieflow::methods::low_storage::LS32;
-use lieflow::methods::magnus::Magnus6;
+use lieflow::methods::magnus::{Magnus4, Magnus6};
 use lieflow::methods::one_bracket::MAGNUS43;
 use lieflow::methods::tableau::{BS3, DOP853, DOPRI5, RK4, RKF45, VERNER6};
 use lieflow::methods::{
@@ -306,6 +306,41 @@ fn an_integral_meets_its_tolerance() {
         LowStorage(LS32),
         OneBracket(MAGNUS43),
         Doubling(CommutatorFree(CF4)),
+        Doubling(Magnus6),
+    );
+}
+
+/// f that is linear in t and does not commute with itself: here a rule for the integral of f is exact, and so is one bracket.
+#[test]
+fn a_linear_field_meets_its_tolerance() {
+    let turning = Flow::of_time(So3::new(), Linear, |t: f64, v: &mut Vector3<f64>| {
+        *v = Vector3::new(2.0, 0.0, 2.0 * t);
+    });
+    let start = Vector3::new(0.6, 0.0, 0.8);
+    let fine = control(1e-13, 1e-13);
+    let (exact, _) = go(&turning, &Rk(DOP853), [0.0, 5.0], &fine, &start).expect("a run");
+    macro_rules! check {
+        ($($method:expr),* $(,)?) => {$(
+            for tol in [1e-4, 1e-6, 1e-8] {
+                let tols = control(tol, tol);
+                let (y, stats) = go(&turning, &$method, [0.0, 5.0], &tols, &start).expect("a run");
+                let error = (y - exact).norm();
+                println!("{:28} {tol:e}: {error:.1e}, {} steps", stringify!($method), stats.accepted);
+                assert!(error < 20.0 * tol, "{} at {tol}: {error:e}, {stats:?}", stringify!($method));
+            }
+        )*};
+    }
+    check!(
+        Rkmk::new(BS3, Exp),
+        Rkmk::new(DOPRI5, Exp),
+        Rkmk::new(DOPRI5, Cay),
+        Rkmk::new(DOP853, Exp),
+        Rk(DOPRI5),
+        CommutatorFree(CF43),
+        LowStorage(LS32),
+        OneBracket(MAGNUS43),
+        Doubling(CommutatorFree(CF4)),
+        Doubling(Magnus4),
         Doubling(Magnus6),
     );
 }

@@ -185,7 +185,7 @@ const FIELD: &[MethodInfo] = &[
         "Magnus method for nonlinear equations, pair 4(3)",
         KEEPS_GROUP,
         Cost {
-            other_case: OtherCase::WithError(&[times(7, Field), times(7, Exp), times(4, Bracket)]),
+            other_case: OtherCase::WithError(&[times(7, Field), times(9, Exp), times(3, Bracket)]),
             ..Cost::of(&[times(6, Field), times(6, Exp), times(3, Bracket)])
         },
         "Casas, Iserles 2006, with another estimate",
@@ -230,7 +230,19 @@ const FIELD: &[MethodInfo] = &[
         &SAME[0],
         LS3_BP.padded(),
     ),
-    low_storage("cf-ls32", 3, "commutator-free in low storage, pair 3(2)", &SAME[2], LS32.padded()),
+    plain(
+        (CF, Needs::Field),
+        "cf-ls32",
+        3,
+        "commutator-free in low storage, pair 3(2)",
+        KEEPS_GROUP,
+        Cost {
+            other_case: OtherCase::WithError(&[times(5, Field), times(6, Exp)]),
+            ..Cost::of(&SAME[2])
+        },
+        "Bazavov 2022, with another estimate",
+        Recipe::LowStorage(LS32.padded()),
+    ),
     low_storage(
         "cf-ls4",
         4,
