@@ -152,6 +152,10 @@ impl Timeline {
                         chooser.wall = Some(end);
                     }
                     h = size * chooser.controller.reject(rejected.ok());
+                    // The least step is tried before the run ends.
+                    if size > min_step {
+                        h = h.max(min_step);
+                    }
                     chooser.h = Some(h);
                     // Next to t two steps of different sizes may be one after rounding.
                     let smaller = self.propose(h, stop).0;
