@@ -399,10 +399,10 @@ impl<'a> Check<'a> {
         let ratio = shorter.powf(order);
         let (found_by, factor, largest, share) = match tolerance {
             None => {
-                // Where knots have made the steps shorter than they were to be, it is their mean that is halved.
+                // Where knots or the end have made the steps shorter than they were to be, it is their mean that is halved.
                 let [t0, t1] = self.run.t_span;
                 let planned = (t1 - t0).abs() / (way.factor * self.scene().grid.h().abs());
-                let factor = match taken.steps as f64 > (planned - 1e-9).ceil() {
+                let factor = match taken.steps as f64 > (planned - 1e-9).ceil() || planned < 1.0 {
                     true => 0.5 * planned / taken.steps as f64,
                     false => 0.5,
                 };
@@ -454,10 +454,20 @@ impl<'a> Check<'a> {
     fn tried(&self, way: Way, times: &[f64]) -> Option<Accuracy> {
         let clock = Instant::now();
         let (rows, taken) = self.rows_at(way, times).ok()?;
+        // The rows of a run that blew up are larger than the motion.
+        let schema = self.watch.model.schema();
+        let sizes: Vec<f64> = parts_of(self.watch)
+            .zip(&self.run.sizes)
+            .map(|((observable, part), size)| {
+                let norms =
+                    rows.iter().map(|row| norm(&schema.row(row)[observable][part.columns.clone()]));
+                size.min(norms.fold(0.0, f64::max))
+            })
+            .collect();
         let apart = |others: &[Vec<f64>]| {
             let pairs = times.iter().zip(rows.iter().zip(others));
             let pairs = pairs.map(|(t, (row, other))| (*t, [&row[..], &other[..]]));
-            Apart::of_rows(self.watch, &self.run.sizes, pairs)
+            Apart::of_rows(self.watch, &sizes, pairs)
         };
         let exact = || times.iter().map(|t| self.watch.exact(*t)).collect::<Option<Vec<_>>>();
         let (found_by, share, apart) = match self.is_exact {
