@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use lieflow::catalog::{MethodSpec, all_methods};
 use lieflow::solve::Next;
-use lieflow::{RunError, SaveAt};
+use lieflow::{RunError, SaveAt, TimeGrid};
 use lieflow_model::formula::Which;
 use lieflow_model::kinds::{KINDS, named};
 use lieflow_model::problem::{
@@ -15,7 +15,7 @@ use lieflow_model::problem::{
 use lieflow_model::reader::{ReadError, Shape, Tree};
 use lieflow_model::scene::{Columns, OnRows, RowFormula};
 use lieflow_model::schema::{Dimension, Numbers, Observable, Part, Row, Schema};
-use numpy::{PyArray1, PyArrayDyn, PyReadonlyArray1};
+use numpy::{PyArray1, PyArrayDyn, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -262,6 +262,17 @@ impl Watcher for OfModel<'_> {
 }
 
 impl Model {
+    /// The row at the start of a run from t0, if it has one: it has the signs that the keys say.
+    fn start_row(&self, py: Python<'_>, method: &str, t0: f64) -> PyResult<Option<Vec<f64>>> {
+        let spec = self.method(py, method)?.0;
+        let grid = TimeGrid::new([t0, t0 + 1.0], 1.0).ok();
+        let run = grid.and_then(|grid| self.model.stepper(&spec, Steps::Equal(grid)).ok());
+        Ok(run.map(|run| {
+            let mut row = Vec::with_capacity(self.width());
+            run.row(&mut row);
+            row
+        }))
+    }
     fn width(&self) -> usize {
         self.model.schema().columns().count()
     }
@@ -412,13 +423,18 @@ impl Model {
         Ok(self.model.problem_type(&self.method(py, method)?.0))
     }
     /// The rows of the exact motion at these times; None where it is not known.
+    #[pyo3(signature = (t0, t, method, rows = None))]
     fn exact<'py>(
         &self,
         py: Python<'py>,
         t0: f64,
         t: PyReadonlyArray1<'py, f64>,
+        method: &str,
+        rows: Option<PyReadonlyArray2<'py, f64>>,
     ) -> PyResult<Option<Bound<'py, PyArrayDyn<f64>>>> {
         let times = t.as_slice()?;
+        let rows = rows.as_ref().map(|rows| rows.as_slice()).transpose()?;
+        let start = self.start_row(py, method, t0)?;
         let found = py.detach(|| {
             let mut numbers: Vec<f64> = Vec::with_capacity(self.width() * times.len());
             let mut asked = Instant::now();
@@ -431,8 +447,13 @@ impl Model {
                     None => return Ok(None),
                     Some(row) => row.map_err(|error| Err((i, error)))?,
                 };
-                if let Some(before) = numbers.len().checked_sub(row.len()) {
-                    self.model.schema().follow(&numbers[before..], &mut row);
+                let before = match (rows, numbers.len().checked_sub(row.len())) {
+                    (Some(rows), _) => rows.get(i * row.len()..(i + 1) * row.len()),
+                    (None, Some(before)) => numbers.get(before..),
+                    (None, None) => start.as_deref(),
+                };
+                if let Some(before) = before {
+                    self.model.schema().follow(before, &mut row);
                 }
                 numbers.append(&mut row);
             }

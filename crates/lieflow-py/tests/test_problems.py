@@ -398,3 +398,50 @@ def test_dense_output_follows_the_turns_of_rows(end, steps):
             assert np.abs(at.euler_zyx - run.euler_zyx).max() < 1e-9, (steps, end)
             assert np.abs(at.quaternion - run.quaternion).max() < 1e-9, (steps, end)
         assert np.abs(few.euler_zyx - run.euler_zyx[::500]).max() < 1e-9
+
+
+def test_a_body_goes_on_with_its_own_momentum():
+    """The state of a free body is its attitude alone: its momentum is in the keys."""
+    body = lf.RigidBody(inertia=[1, 2, 3], omega_body=[0.3, 1, 0.2])
+    other, end = body.replace(inertia=[1.5, 2, 3]), lf.solve_ivp(body, (0, 1)).y_end
+    with pytest.raises(lf.ArgumentError, match="an attitude alone, whose momentum the keys of the other problem say"):
+        lf.solve_ivp(other, (1, 2), end)
+    again = pickle.loads(pickle.dumps(end))
+    assert np.array_equal(lf.solve_ivp(body, (1, 2), again).momentum_body[0], end["momentum_body"])
+    alone = lf.solve_ivp(body, (0, 1), quantities="momentum_body").y_end
+    assert np.array_equal(lf.solve_ivp(other, (1, 2), alone, quantities="momentum_body").momentum_body[0], alone["momentum_body"])
+
+
+def test_estimates_know_turns_and_signs():
+    for keys, asked in (
+        ({"omega_body": [0.1, 1, 0.2], "quaternion": [-0.5, 0.5, 0.5, 0.5]}, ["quaternion", "attitude"]),
+        ({"omega_body": [0.1, 1, 2.2]}, ["euler_zyx", "attitude"]),
+    ):
+        body = lf.RigidBody(inertia=[1, 2, 3], **keys)
+        run = lf.solve_ivp(body, (0, 30), t_eval=[0, 10, 20, 30], quantities=asked)
+        error = run.estimate_error()
+        assert error.found_by == "the exact motion" and max(error.y.values()) < 1e-11, error
+        first = body.exact([0.0], asked[0])[asked[0]]
+        assert np.abs(first[0] - run.y[asked[0]][0]).max() < 1e-14
+
+
+def test_estimates_leave_out_rows_where_an_event_changes_the_state():
+    """The row at the end of the step has the y after the event, and that of a second run at this time the y before."""
+    def f(t, y):
+        return [0.3 * np.sin(3 * t), 0.2, 1 + y[0]]
+
+    flip = lf.Event(lambda t, y: t - 5.03, change=lambda t, y: -y)
+    settings = {"group": "SO(3)", "action": "linear", "events": flip}
+    for steps in ({}, {"dt": 0.5, "method": "rkmk4"}):
+        run = lf.solve_ivp(f, (0, 20), [0.6, 0, 0.8], **settings, **steps)
+        place = int(np.abs(run.t - 5.03).argmin())
+        assert np.abs(run.y[place] + run.y_events[0][0]).max() < 1e-12
+        assert run.estimate_error().y < (1e-9 if not steps else 0.02)
+
+
+def test_a_pulse_is_searched_for_after_few_steps():
+    def f(t, s):
+        return [2 * np.exp(-(((t - 17.3) / 0.05) ** 2)), 0, 0.1]
+
+    run = lf.solve_ivp(f, (0, 30), [0, 0.6, 0.8], group="SO(3)", action="linear", rtol=1e-6)
+    assert run.nsteps > 20 or run.estimate_error().y > 0.1, run.estimate_error()

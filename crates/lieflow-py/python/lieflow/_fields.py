@@ -45,7 +45,7 @@ class Quantities(dict[str, NDArray[Any]]):
 class State(Quantities):
     """The quantities at the end of a run of a problem. Another run goes on from them: ``y0=result.y_end``."""
 
-    def __init__(self, quantities: dict[str, NDArray[Any]], numbers: NDArray[np.float64], of: tuple[str, str]) -> None:
+    def __init__(self, quantities: dict[str, NDArray[Any]], numbers: NDArray[np.float64], of: tuple[str, str, str]) -> None:
         super().__init__(quantities)
         self._numbers, self._of = numbers, of
 

@@ -164,7 +164,7 @@ def GL(n: int) -> Group:
 
 
 def SL(n: int) -> Group:
-    """Return SL(n), the matrices with det g = 1. cay leaves it, and is refused."""
+    """Return SL(n), the matrices with det g = 1. For n > 2 cay leaves it: det cay(u) is not 1."""
     return Group("sl", size_of("n", n))
 
 

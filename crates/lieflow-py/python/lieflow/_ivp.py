@@ -42,9 +42,10 @@ class Event:
     direction : float
         Only rising zeros for a positive number, only falling ones for a negative number.
     change : callable, optional
-        change(t, y, *args) returns the new y. The run goes on from it. It must be on M. Rows and events at that time have
-        the y before it; ``sol`` has the new one. Of a problem y is the array of the
-        numbers of its state, in the order of :attr:`lieflow.Integrator.state`; a complex state is a complex array.
+        change(t, y, *args) returns the new y. The run goes on from it. It must be on M. The event and a row of ``t_eval`` at
+        that time have the y before it; ``sol`` and the row at the end of the step have the new one. Of a problem y is the
+        array of the numbers of its state, in the order of :attr:`lieflow.Integrator.state`; a complex state is a complex
+        array.
     points : int, optional
         At how many points of each step g is evaluated. The default depends on g.
     name : str, optional
@@ -600,7 +601,9 @@ def _of_problem(
 
     def again(result: Result) -> tuple[str, Result]:
         plain = y0 is None and not any(event.change for event in events)
-        exact = problem.exact(result.t, asked, t0=span[0]) if plain else None
+        # Euler angles and quaternions are those of the rows, up to turns and signs.
+        found = model.exact(span[0], result.t, method, rows) if plain else None
+        exact = None if found is None else layout.split(found)
         if exact is not None and not events:
             return "the exact motion", Result(y=exact, t_events=[])
 
@@ -612,7 +615,6 @@ def _of_problem(
         if exact is not None:
             return "the exact motion, and the events by " + found_by, Result(y=exact, t_events=other.t_events)
         return found_by, other
-
 
     def first() -> Quantities:
         is_start = found["t"][0] == span[0]

@@ -141,7 +141,7 @@ class Problem:
         """
         asked = self.asked(quantities)
         times = real("t", t)
-        found = self._model(asked, ()).exact(float(t0), np.ascontiguousarray(times.ravel()))
+        found = self._model(asked, ()).exact(float(t0), np.ascontiguousarray(times.ravel()), self.method)
         if found is None:
             return None
         return self._layout(asked, ()).split(found.reshape(times.shape + found.shape[1:]))
@@ -185,16 +185,23 @@ class Problem:
             self._complex = (None if is_real else ComplexState(tuple(shape), size, model.by_parts),)
         return self._complex[0]
 
-    def _form(self, model: Any, method: str) -> tuple[str, str]:
-        """What the numbers of a state are of: the kind, and the form of the model that the method runs on."""
-        return type(self).kind, model.form(method)
+    def _form(self, model: Any, method: str) -> tuple[str, str, str]:
+        """What the numbers of a state are of: the kind, the form of the model, and the keys if these say what is not there."""
+        form = model.form(method)
+        # The attitude of a free body is a state alone: the keys have its momentum.
+        is_alone = type(self).kind == "rigid-body" and form.endswith("RigidBodyAttitude")
+        return type(self).kind, form, repr(sorted(self._keys.items())) if is_alone else ""
 
     def _start(self, y0: Any, model: Any, method: str) -> Array | None:
         """The numbers of another state: the end of a run, these numbers, or a complex array."""
         if y0 is None:
             return None
         if isinstance(y0, State):
-            if y0._of != self._form(model, method):
+            form = self._form(model, method)
+            if y0._of[:2] == form[:2] and y0._of != form:
+                expected = "that of a run with the same keys; replace(momentum_body=..., attitude=...) begins with its last row"
+                raise ArgumentError("y0", "an attitude alone, whose momentum the keys of the other problem say", expected)
+            if y0._of != form:
                 expected = f"the end of a run of {type(self).kind!r} with the same quantities"
                 raise ArgumentError("y0", f"the end of another run, of {y0._of[0]!r}", expected)
             return y0._numbers

@@ -317,7 +317,7 @@ class Result:
         """Return how far the outputs and the events are from the exact motion, or from a second run.
 
         The second run has half the step size, or a tenth of the tolerances; where these are the least that rounding allows,
-        ten times the tolerances. Then the estimate is an upper bound. Where the steps are the same again, because tolerances
+        ten times the tolerances. Then the estimate is mostly too large. No second run shows what rounding does to both. Where the steps are the same again, because tolerances
         below rounding choose them, it takes steps of a quarter of their mean size. Where it is quick (0.3 s, or the time of
         the run), a run by tolerances takes at least 2000 steps, so that it finds a short pulse of f that the first one
         passed over.
@@ -326,10 +326,13 @@ class Result:
         if again is None:
             raise RunError("the run cannot be repeated: this is a copy of the result without f")
         found_by, other = again(self)
+        # An event may have changed the state: then a row at the end of a step has the new one, and another row the old one.
+        rows = ~np.isin(self.t, np.concatenate([*self.t_events, []]))
+        rows = rows if rows.any() else np.ones_like(rows)
         if isinstance(self.y, Quantities):
-            y: Any = {name: _distance(x, other.y[name]) for name, x in self.y.items()}
+            y: Any = {name: _distance(x[rows], other.y[name][rows]) for name, x in self.y.items()}
         else:
-            y = _distance(self.y, other.y)
+            y = _distance(self.y[rows], other.y[rows])
         forward = self.t_end >= self.t[0] if len(self.t) else True
 
         def apart(own: Array, others: Array) -> float:

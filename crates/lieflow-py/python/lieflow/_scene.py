@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from . import _lieflow
+from ._errors import RunError
 from ._problems import Problem, _quietly
 from ._result import Layout, Result, warn_of_events
 
@@ -69,7 +70,11 @@ class Scene:
         found["y_events"] = [layout.split(y) for y in found["y_events"]]
         at_end = len(rows) > 0 and found["t"][-1] == found["t_end"]
         found["y_end"] = layout.split(rows[-1]) if at_end else None
-        return Result(sol=None, _rows=rows, _first=layout.split(rows[:1], every=True), _layout=layout, **found)
+
+        def again(_: Result) -> Any:
+            raise RunError("a scene is not run again: solve_ivp(scene.problem, scene.t_span).estimate_error() has an estimate")
+
+        return Result(sol=None, _again=again, _rows=rows, _first=layout.split(rows[:1], every=True), _layout=layout, **found)
 
     def __repr__(self) -> str:
         return f"lieflow.Scene({self._args[0]!r}{f', {list(self._args[1])}' if self._args[1] else ''})"
