@@ -266,6 +266,19 @@ fn not_a_number() {
     }
 }
 
+/// Runs from 0 to `end` by these methods end within so many tolerances of the exact point.
+macro_rules! meet {
+    (($problem:expr, $end:expr, $start:expr, $exact:expr, $most:expr); $($method:expr),* $(,)?) => {$(
+        for tol in [1e-4, 1e-6, 1e-8] {
+            let tols = control(tol, tol);
+            let (y, stats) = go($problem, &$method, [0.0, $end], &tols, &$start).expect("a run");
+            let error = (y - $exact).norm();
+            println!("{:28} {tol:e}: {error:.1e}, {} steps", stringify!($method), stats.accepted);
+            assert!(error < $most * tol, "{} at {tol}: {error:e}, {stats:?}", stringify!($method));
+        }
+    )*};
+}
+
 /// f of t alone that commutes with itself: a step is a rule for an integral. Two results that are one rule there would tell
 /// nothing of their error.
 #[test]
@@ -278,19 +291,8 @@ fn an_integral_meets_its_tolerance() {
     let sum: f64 = (0..1000).map(|i| part(2 * i) + 4.0 * part(2 * i + 1) + part(2 * i + 2)).sum();
     let angle = 2.0 / 3.0 * 6.0f64.sin() + sum * 1e-3 / 3.0;
     let exact = turn(&(Vector3::z() * angle)) * Vector3::x();
-    macro_rules! check {
-        ($($method:expr),* $(,)?) => {$(
-            for tol in [1e-4, 1e-6, 1e-8] {
-                let tols = control(tol, tol);
-                let (y, stats) =
-                    go(&turning, &$method, [0.0, 2.0], &tols, &Vector3::x()).expect("a run");
-                let error = (y - exact).norm();
-                println!("{:28} {tol:e}: {error:.1e}, {} steps", stringify!($method), stats.accepted);
-                assert!(error < 10.0 * tol, "{} at {tol}: {error:e}, {stats:?}", stringify!($method));
-            }
-        )*};
-    }
-    check!(
+    meet!(
+        (&turning, 2.0, Vector3::x(), exact, 10.0);
         Rkmk::new(BS3, Exp),
         Rkmk::new(RKF45, Exp),
         Rkmk::new(DOPRI5, Exp),
@@ -319,18 +321,8 @@ fn a_linear_field_meets_its_tolerance() {
     let start = Vector3::new(0.6, 0.0, 0.8);
     let fine = control(1e-13, 1e-13);
     let (exact, _) = go(&turning, &Rk(DOP853), [0.0, 5.0], &fine, &start).expect("a run");
-    macro_rules! check {
-        ($($method:expr),* $(,)?) => {$(
-            for tol in [1e-4, 1e-6, 1e-8] {
-                let tols = control(tol, tol);
-                let (y, stats) = go(&turning, &$method, [0.0, 5.0], &tols, &start).expect("a run");
-                let error = (y - exact).norm();
-                println!("{:28} {tol:e}: {error:.1e}, {} steps", stringify!($method), stats.accepted);
-                assert!(error < 20.0 * tol, "{} at {tol}: {error:e}, {stats:?}", stringify!($method));
-            }
-        )*};
-    }
-    check!(
+    meet!(
+        (&turning, 5.0, start, exact, 20.0);
         Rkmk::new(BS3, Exp),
         Rkmk::new(DOPRI5, Exp),
         Rkmk::new(DOPRI5, Cay),

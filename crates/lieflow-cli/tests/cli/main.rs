@@ -20,5 +20,6 @@ mod right;
 mod room;
 mod run;
 mod same_bits;
+mod second_run;
 mod support;
 mod units;
