@@ -263,15 +263,12 @@ impl Watcher for OfModel<'_> {
 
 impl Model {
     /// The row at the start of a run from t0, if it has one: it has the signs that the keys say.
-    fn start_row(&self, py: Python<'_>, method: &str, t0: f64) -> PyResult<Option<Vec<f64>>> {
-        let spec = self.method(py, method)?.0;
-        let grid = TimeGrid::new([t0, t0 + 1.0], 1.0).ok();
-        let run = grid.and_then(|grid| self.model.stepper(&spec, Steps::Equal(grid)).ok());
-        Ok(run.map(|run| {
-            let mut row = Vec::with_capacity(self.width());
-            run.row(&mut row);
-            row
-        }))
+    fn start_row(&self, method: &MethodSpec, t0: f64) -> Option<Vec<f64>> {
+        let grid = TimeGrid::new([t0, t0 + 1.0], 1.0).ok()?;
+        let run = self.model.stepper(method, Steps::Equal(grid)).ok()?;
+        let mut row = Vec::with_capacity(self.width());
+        run.row(&mut row);
+        Some(row)
     }
     fn width(&self) -> usize {
         self.model.schema().columns().count()
@@ -434,7 +431,7 @@ impl Model {
     ) -> PyResult<Option<Bound<'py, PyArrayDyn<f64>>>> {
         let times = t.as_slice()?;
         let rows = rows.as_ref().map(|rows| rows.as_slice()).transpose()?;
-        let start = self.start_row(py, method, t0)?;
+        let method = self.method(py, method)?.0;
         let found = py.detach(|| {
             let mut numbers: Vec<f64> = Vec::with_capacity(self.width() * times.len());
             let mut asked = Instant::now();
@@ -447,10 +444,14 @@ impl Model {
                     None => return Ok(None),
                     Some(row) => row.map_err(|error| Err((i, error)))?,
                 };
+                let start;
                 let before = match (rows, numbers.len().checked_sub(row.len())) {
                     (Some(rows), _) => rows.get(i * row.len()..(i + 1) * row.len()),
                     (None, Some(before)) => numbers.get(before..),
-                    (None, None) => start.as_deref(),
+                    (None, None) => {
+                        start = self.start_row(&method, t0);
+                        start.as_deref()
+                    }
                 };
                 if let Some(before) = before {
                     self.model.schema().follow(before, &mut row);
