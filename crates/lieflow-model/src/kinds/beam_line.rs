@@ -156,11 +156,17 @@ impl BeamLine {
     fn particle(&self, g: &Mat<f64>, coordinates: [usize; 4]) -> [f64; 4] {
         coordinates.map(|i| (0..4).map(|j| g[(i, j)] * self.particle[j]).sum())
     }
-    /// (k_x, k_z) at s.
+    /// Where each element of a cell ends, and its strengths.
+    fn ends_of(&self, cell: f64) -> impl Iterator<Item = (f64, [f64; 2])> {
+        let start = cell * self.cell_length();
+        self.strengths.iter().map(move |(end, strength)| (start + end, *strength))
+    }
+    /// (k_x, k_z) at s. They change exactly at the ends that the driver knows.
     fn strength(&self, s: f64) -> [f64; 2] {
-        let s = s.rem_euclid(self.cell_length());
-        let here = self.strengths.iter().find(|(end, _)| s < *end).or(self.strengths.last());
-        here.map_or([0.0; 2], |(_, strength)| *strength)
+        // The quotient may be rounded to the next cell.
+        let cell = (s / self.cell_length()).floor();
+        let mut ends = [cell - 1.0, cell, cell + 1.0].into_iter().flat_map(|i| self.ends_of(i));
+        ends.find(|(end, _)| s < *end).map_or([0.0; 2], |(_, strength)| strength)
     }
 }
 
@@ -239,8 +245,7 @@ impl System for BeamLine {
         let starts = (0..=KNOTS_MAX as u32)
             .map(|i| cells.start + f64::from(i))
             .take_while(|cell| *cell < cells.end);
-        let ends =
-            starts.flat_map(|cell| self.strengths.iter().map(move |(end, _)| cell * length + end));
+        let ends = starts.flat_map(|cell| self.ends_of(cell)).map(|(end, _)| end);
         // One more than a scene may have, which refuses it.
         let counts = |s: &f64| (from < *s && *s < to) || *s == s1;
         Some(ends.filter(counts).take(KNOTS_MAX + 1).collect())

@@ -343,6 +343,34 @@ fn the_exact_map_of_whole_cells_is_a_power() {
     }
 }
 
+/// Where magnets end, a step of the grid may end a rounding before, and its last stage a rounding behind. The lengths are
+/// no binary fractions.
+#[test]
+fn steps_between_magnets_keep_their_order() {
+    for method in ["rkmk4", "cg4", "rk4", "rkmk dop853 exp"] {
+        for (length, span) in [(0.7, [0.0, 15.0]), (1.3, [0.3, 20.0]), (0.7, [1000.25, 1020.25])] {
+            let keys = format!(
+                "kind = \"beam-line\"\nparticle = [1, 1, 0, 0]\nelements = [\n\
+                 {{ kind = \"quadrupole\", length = 0.4, k = 1.2 }},\n\
+                 {{ kind = \"drift\", length = {length} }},\n\
+                 {{ kind = \"quadrupole\", length = 0.4, k = -1.2 }},\n\
+                 {{ kind = \"drift\", length = {length} }}]"
+            );
+            let gap = |dt: f64| {
+                let time = format!("t_span = {span:?}\nat_knots = true\ndt = {dt}");
+                let of = scene(&keys, &format!("name = {method:?}"), &time, "[\"map\"]");
+                let exact = of.model().unwrap().exact(span).unwrap().unwrap();
+                let size = exact.iter().fold(1.0, |size: f64, x| size.max(x.abs()));
+                far(&last_at_stops(&of), &exact) / size
+            };
+            let (long, short) = (gap(0.05), gap(0.025));
+            let what = format!("{method}, {length}, {span:?}: {long:e}, {short:e}");
+            assert!(long < 1e-5, "{what}");
+            assert!(short < long / 12.0 || short < 1e-11, "{what}");
+        }
+    }
+}
+
 /// The last row of a run whose steps end at the knots.
 fn last_at_stops(of: &Scene) -> Vec<f64> {
     let (model, mut end) = (of.model().unwrap(), Vec::new());
