@@ -193,6 +193,12 @@ impl Tolerance {
         Ok(PartTolerance::new(rtol, atol)?.into())
     }
 
+    /// rtol = 1 and atol = 0, by the same rule: an error ratio is then a relative size.
+    pub(crate) fn relative(&self) -> Self {
+        let part = PartTolerance { rtol: 1.0, atol: 0.0, components: Vec::new() };
+        Tolerance::from(part).by(self.rule)
+    }
+
     /// One tolerance for each part of the points, in their order.
     ///
     /// # Errors

@@ -233,8 +233,8 @@ impl Timeline {
         }
     }
 
-    /// The first step, by Hairer, Nørsett, Wanner I, II.4, in the norm of 𝔤. A trial step moves by 1/100 and shows how
-    /// much f changes.
+    /// The first step, by Hairer, Nørsett, Wanner I, II.4. Rates are in the norm of 𝔤, those of translations relative to
+    /// the vector. A trial step moves by 1/100 and shows how much f changes.
     fn first_step(&mut self, points: &mut dyn AnyPoints, stop: f64) -> f64 {
         let Pacer::ByError(chooser) = &self.pacer else { return 0.0 };
         let (controller, tolerance) =

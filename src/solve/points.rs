@@ -14,9 +14,9 @@ use crate::methods::{
     Attempt, Attempts, Embedded, EqualSteps, Facts, Method, Step, Streak, Watch, Within,
 };
 use crate::problems::{AlgOf, PointOf, Problem, ScalarOf};
-use crate::scalar::Real;
+use crate::scalar::{Real, smaller};
 use crate::space::{Metric, check_within_reach};
-use crate::tolerance::Tolerance;
+use crate::tolerance::{Rule, Tolerance};
 
 /// How far from M, relative to y, a step may move because f is not in 𝔤. Rounding of f moves it less.
 const OFF_BY_A_STEP: f64 = 1e-9;
@@ -57,9 +57,9 @@ pub(super) trait AnyPoints {
     fn attempt(&mut self, step: Step<f64>, end: f64, streak: &Streak<'_>) -> Attempts;
     /// from ← y, y ← to.
     fn accept(&mut self);
-    /// ‖f(t, y)‖. Stores f.
+    /// How fast f(t, y) moves y. Stores f.
     fn rate(&mut self, t: f64) -> f64;
-    /// ‖f(t, to) − f‖ with the stored f.
+    /// How fast f(t, to) − f moves `to`, with the stored f.
     fn change_of_rate(&mut self, t: f64) -> f64;
     /// Corrects y to M, and records how far it was. Where f may be outside of 𝔤, refuses a state that was farther from M
     /// than rounding moves it.
@@ -90,7 +90,8 @@ type AttemptOf<P, M> = for<'a> fn(&M, &P, Attempt<'a, P>, &mut <M as Method<P>>:
 /// What an adaptive run needs from its method.
 pub(super) struct Estimator<P: Problem, M: Method<P>> {
     attempt: AttemptOf<P, M>,
-    norm: fn(&P, &AlgOf<P>) -> f64,
+    /// How fast v moves y. The tolerance is [`relative`](Rates::relative).
+    rate: fn(&P, &AlgOf<P>, &PointOf<P>, &Tolerance) -> f64,
 }
 
 impl<P: Problem, M: Method<P>> Clone for Estimator<P, M> {
@@ -105,7 +106,18 @@ where
     ScalarOf<P>: Into<f64>,
 {
     pub(super) fn of_method() -> Self {
-        Estimator { attempt: M::attempt, norm: |problem, v| problem.group().norm(v).into() }
+        // Where sizes count, that of a translation is relative to the vector that it moves, unless this is 0.
+        let rate = |problem: &P, v: &AlgOf<P>, y: &PointOf<P>, relative: &Tolerance| {
+            let (group, action) = (problem.group(), problem.action());
+            let rate = group.norm(v);
+            match relative.rule() {
+                Rule::PerLength => rate.into(),
+                Rule::PerStep => {
+                    smaller(rate, action.error_ratio(group, v, y, &mut relative.scales())).into()
+                }
+            }
+        };
+        Estimator { attempt: M::attempt, rate }
     }
 }
 
@@ -114,6 +126,8 @@ where
 struct Rates<P: Problem, M: Method<P>> {
     estimator: Estimator<P, M>,
     tolerance: Tolerance,
+    /// rtol = 1 and atol = 0, by the same rule.
+    relative: Tolerance,
     f: AlgOf<P>,
 }
 
@@ -239,7 +253,8 @@ impl<'a, P: Problem, M: Method<P>> Points<'a, P, M> {
             None => None,
             Some((tolerance, estimator)) => {
                 error_order = Some(facts.order_of_estimate()?);
-                Some(Rates { estimator, tolerance: tolerance.clone(), f: problem.group().zero() })
+                let (tolerance, relative) = (tolerance.clone(), tolerance.relative());
+                Some(Rates { estimator, tolerance, relative, f: problem.group().zero() })
             }
         };
         let work = method.work(problem, &y)?;
@@ -396,18 +411,18 @@ impl<P: Problem, M: Method<P>> AnyPoints for Points<'_, P, M> {
     fn rate(&mut self, t: f64) -> f64 {
         let Points { problem, y, rates, field, .. } = self;
         let problem = &**problem;
-        rates.as_mut().map_or(0.0, |Rates { estimator, f, .. }| {
+        rates.as_mut().map_or(0.0, |Rates { estimator, relative, f, .. }| {
             problem.f(ScalarOf::<P>::lit(t), y, f, field);
-            (estimator.norm)(problem, f)
+            (estimator.rate)(problem, f, y, relative)
         })
     }
     fn change_of_rate(&mut self, t: f64) -> f64 {
         let Points { problem, to, rates, v, field, .. } = self;
         let problem = &**problem;
-        rates.as_mut().map_or(0.0, |Rates { estimator, f, .. }| {
+        rates.as_mut().map_or(0.0, |Rates { estimator, relative, f, .. }| {
             problem.f(ScalarOf::<P>::lit(t), to, v, field);
             problem.group().axpy(ScalarOf::<P>::lit(-1.0), f, v);
-            (estimator.norm)(problem, v)
+            (estimator.rate)(problem, v, to, relative)
         })
     }
     fn correct(&mut self, cadence: &mut Cadence, stats: &mut Stats) -> Result<(), Error> {

@@ -302,7 +302,7 @@ fn the_way_to_the_end() {
     assert!(run.last_step().h >= 2.0 - 1e-12, "{:?}", run.last_step());
 }
 
-/// The first step: Hairer, Nørsett, Wanner I, II.4, with 1 as the unit. h₀ moves by 1/100; then
+/// The first step: Hairer, Nørsett, Wanner I, II.4, with ‖y‖ as the unit, or 1 if it is smaller. h₀ moves by 1/100; then
 /// (tolerance/100)^(1/k)/max(‖f‖, √(‖Δf‖/h₀)), at most 100 h₀.
 #[test]
 fn the_first_step() {
@@ -314,21 +314,23 @@ fn the_first_step() {
         (|t| V::new(1.0 + t, 0.0, 0.0), -10.0),
     ];
     for (field, end) in fields {
-        for (rtol, atol, order) in [(1e-6, 1e-9, 4usize), (1e-3, 1e-3, 2), (0.0, 1e-12, 7)] {
+        let settings = [(1e-6, 1e-9, 4usize, 1e3), (1e-3, 1e-3, 2, 0.1), (0.0, 1e-12, 7, 30.0)];
+        for (rtol, atol, order, size) in settings {
+            let (start, unit) = (V::repeat(size), |y: V| y.norm().max(1.0));
             let problem =
                 Flow::of_time(free(), LeftTranslation, move |t: f64, v: &mut V| *v = field(t));
             let method = told(order, |_, _| Some(0.01));
-            let run = Solve::new(&problem, &method, [0.0, end])
-                .tolerances(rtol, atol)
-                .run(V::repeat(1e3));
+            let run = Solve::new(&problem, &method, [0.0, end]).tolerances(rtol, atol).run(start);
             run.expect("a run");
             let seen = method.attempts.take();
-            let h0 = (0.01 / field(0.0).norm()).min(f64::abs(end));
+            let first = field(0.0).norm() / unit(start);
+            let h0 = (0.01 / first).min(f64::abs(end));
             near(seen[0].1, h0.copysign(end));
-            let bend = (field(h0.copysign(end)) - field(0.0)).norm() / h0;
-            let rate = field(0.0).norm().max(bend.sqrt());
+            let moved = start + V::x() * h0.copysign(end);
+            let bend = (field(h0.copysign(end)) - field(0.0)).norm() / unit(moved) / h0;
+            let rate = first.max(bend.sqrt());
             let h = (0.01 * (atol + rtol)).powf(1.0 / (order as f64 + 1.0)) / rate;
-            near(seen[1].1, h.min(100.0 * h0).copysign(end));
+            near(seen[1].1, h.min(100.0 * h0).min(f64::abs(end)).copysign(end));
         }
     }
     // What hardly moves: a millionth of the span, and a hundred times that.

@@ -345,3 +345,22 @@ fn the_hardest_place_of_a_run_is_known() {
     assert!((at - 6.3).abs() < 0.06 && size < 0.02, "{at}, {size}");
     assert_eq!(run(0.0).after_rejection, None);
 }
+
+/// The unit of a vector does not change the steps, also far from t = 0 where the numbers are large.
+#[test]
+fn the_unit_of_a_vector_does_not_count() {
+    let turning = |t: f64, y: &V, v: &mut V| *v = V::new(-y.y, y.x, 0.3 * t.cos() * y.z);
+    let (problem, method) = (Flow::new(free(), LeftTranslation, turning), Rkmk::new(DOPRI5, Exp));
+    let run = |unit: f64| {
+        let solve = Solve::new(&problem, &method, [1e3, 1.01e3]).tolerances(1e-6, 0.0);
+        solve.run(V::new(unit, 0.0, unit)).expect("a run")
+    };
+    let one = run(1.0);
+    for unit in [2f64.powi(37), 2f64.powi(200)] {
+        let other = run(unit);
+        assert_eq!(other.stats.accepted, one.stats.accepted, "{unit}");
+        assert!((other.y / unit - one.y).norm() < 1e-13, "{unit}");
+    }
+    let turned = V::new(10f64.cos(), 10f64.sin(), 0.0);
+    assert!((one.y - turned).xy().norm() < 1e-4);
+}
