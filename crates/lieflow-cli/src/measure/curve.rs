@@ -109,6 +109,11 @@ pub struct Reached {
 }
 
 impl Reached {
+    /// The size of the steps.
+    pub fn size(&self) -> Size {
+        self.tolerance.map_or(Size::Steps(self.steps), Size::Tolerance)
+    }
+
     /// CPU time of the run without rows of output, or with them where they are all that is computed.
     pub fn run_seconds(&self) -> f64 {
         self.seconds * self.length
@@ -122,6 +127,13 @@ impl Reached {
 
 /// A run with a larger error has lost the solution.
 pub(super) const OFF: f64 = 0.1;
+
+/// A number that a person types: two digits, rounded down.
+fn rounded_down(x: f64) -> f64 {
+    let unit = x.log10().floor() - 1.0;
+    let digits = (x / 10f64.powf(unit)).floor();
+    format!("{digits}e{unit}").parse().unwrap_or(x)
+}
 
 /// The runs that no other run beats in both error and cost, as (curve, point), from the largest error
 /// to the smallest. A run without a cost is none, nor one that is more than a tenth off.
@@ -181,6 +193,10 @@ const ABOVE: f64 = 3.0;
 const STEADY: f64 = 0.7;
 /// Two slopes agree if they differ by no more than this part of the larger one.
 const AGREE: f64 = 0.15;
+/// A run that was made is taken where the steps on the line to it are longer by at most this factor.
+const NEARLY: f64 = 1.1;
+/// Two step sizes have a slope if they differ by this factor.
+const APART: f64 = 1.2;
 /// The largest number of slopes that an order is measured with.
 const SLOPES_MAX: usize = 3;
 
@@ -208,11 +224,12 @@ impl Curve {
         !self.stays && self.points.iter().any(|point| !point.off_manifold.is_nan())
     }
 
-    /// log(error ratio)/log(step ratio) of each run and the run before it.
+    /// log(error ratio)/log(step ratio) of each run and the run before it. Steps of nearly the same size have none.
     pub fn slopes(&self) -> Vec<Option<f64>> {
         let slope = |pair: &[WorkPoint]| {
-            let slope = (pair[0].error / pair[1].error).ln() / (pair[0].h / pair[1].h).ln();
-            Some(slope).filter(|slope| slope.is_finite())
+            let ratio = pair[0].h / pair[1].h;
+            let slope = (pair[0].error / pair[1].error).ln() / ratio.ln();
+            Some(slope).filter(|slope| slope.is_finite() && ratio >= APART)
         };
         let first = self.points.first().map(|_| None);
         first.into_iter().chain(self.points.windows(2).map(slope)).collect()
@@ -260,6 +277,16 @@ impl Curve {
         used.iter().map(|run| (run.h.ln(), run.error.ln())).collect::<Fit>().slope()
     }
 
+    /// Adds a run at its place.
+    pub(super) fn insert(&mut self, point: WorkPoint) {
+        let is_coarser = |p: &WorkPoint| match (p.size, point.size) {
+            (Size::Steps(a), Size::Steps(b)) => a < b,
+            (Size::Tolerance(a), Size::Tolerance(b)) => a > b,
+            _ => true,
+        };
+        self.points.insert(self.points.partition_point(is_coarser), point);
+    }
+
     /// Where this error is reached soonest, by a run or between two by the line through them in the
     /// logarithms; `None` where no run reaches it.
     pub fn reached(&self, error: f64) -> Option<Reached> {
@@ -299,7 +326,7 @@ impl Curve {
         // Where it is exactly 0 there is no line in the logarithms.
         let error_between = |x: f64, y: f64| if x.min(y) > 0.0 { between(x, y) } else { x.max(y) };
         let tolerance = match (a.size, b.size) {
-            (Size::Tolerance(x), Size::Tolerance(y)) => Some(between(x, y)),
+            (Size::Tolerance(x), Size::Tolerance(y)) => Some(rounded_down(between(x, y))),
             _ => None,
         };
         let between = Reached {
@@ -313,8 +340,7 @@ impl Curve {
             energy_error: error_between(a.energy_error, b.energy_error),
             off_manifold: error_between(a.off_manifold, b.off_manifold),
         };
-        // Where a run costs little more than its beginning, a more accurate one may be as fast.
-        let measured = runs[after..].iter().filter(|p| p.error <= error).map(|p| Reached {
+        let of_run = |p: &&WorkPoint| Reached {
             seconds: self.seconds(p),
             output: self.output(p),
             h: p.h,
@@ -326,7 +352,11 @@ impl Curve {
             },
             energy_error: p.energy_error,
             off_manifold: p.off_manifold,
-        });
+        };
+        let is_run = between.size() == b.size || between.h <= NEARLY * b.h;
+        let between = if is_run { of_run(&b) } else { between };
+        // Where a run costs little more than its beginning, a more accurate one may be as fast.
+        let measured = runs[after..].iter().filter(|p| p.error <= error).map(of_run);
         let passing = core::iter::once(between).chain(measured).filter(pass);
         passing.min_by(|a, b| a.seconds.total_cmp(&b.seconds))
     }

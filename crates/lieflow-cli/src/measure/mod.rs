@@ -174,6 +174,7 @@ pub fn speed_against_error(
     bench.jobs.iter_mut().for_each(|job| job.curve = places[job.curve]);
     let mut lines: Vec<Line<'_>> = lines.into_iter().map(|(_, line)| line).collect();
     bench.go_on(&mut lines)?;
+    bench.come_near(&mut lines)?;
     let Bench { mut journal, mut jobs, tick, .. } = bench;
     let length = (t_span[1] - t_span[0]).abs();
     // Methods that leave M, and the exact motion, say nothing of the others.
@@ -181,8 +182,7 @@ pub fn speed_against_error(
     let ahead = Ahead::of(ahead.flat_map(|c| &c.points).map(|p| (p.error, p.first_seconds)));
     // What is far from the goal, or slow, is not timed again.
     jobs.retain(|job| {
-        let point = &mut lines[job.curve].curve.points[job.point];
-        point.seconds_per_unit = (point.first_seconds + point.output_seconds) / length;
+        let Some(point) = lines[job.curve].point_of(job.size) else { return false };
         match effort.goal {
             Some(goal) => point.error <= NEAR * goal && point.first_seconds <= SLOW * best,
             None => point.first_seconds <= SLOW * ahead.seconds(point.error),
@@ -212,8 +212,9 @@ pub fn speed_against_error(
         }
     }
     for mut job in jobs {
-        let point = &mut lines[job.curve].curve.points[job.point];
-        point.seconds_per_unit = (median(&mut job.times) + point.output_seconds) / length;
+        if let Some(point) = lines[job.curve].point_of(job.size) {
+            point.seconds_per_unit = (median(&mut job.times) + point.output_seconds) / length;
+        }
     }
     Ok((lines.into_iter().map(|line| line.curve).collect(), judge.reference))
 }
@@ -235,6 +236,11 @@ struct Line<'a> {
 }
 
 impl Line<'_> {
+    /// The run with this size of steps.
+    fn point_of(&mut self, size: Size) -> Option<&mut WorkPoint> {
+        self.curve.points.iter_mut().find(|point| point.size == size)
+    }
+
     /// Expected time of a run to this error. `None` if unknown.
     fn promise(&self, error: f64) -> Option<f64> {
         let (last, order) = (self.curve.points.last()?, self.curve.order?);
@@ -272,6 +278,9 @@ pub const SLOW: f64 = 8.0;
 /// An error is near the goal if it is at most this many times the goal.
 const NEAR: f64 = 1e4;
 
+/// The number of runs that come nearer to an error.
+const NEARER: usize = 4;
+
 /// The number of methods that continue at a time to an error that none has reached.
 const PROMISING: usize = 6;
 
@@ -297,7 +306,7 @@ impl Bench<'_> {
             (&curve.candidate, self.t_span, self.effort.shortest.as_secs_f64());
         let key = format!("{} {:?} {size:?}", candidate.name(), candidate.layer);
         let known = self.journal.as_ref().and_then(|journal| journal.point(&key)).cloned();
-        let point = match known {
+        let mut point = match known {
             Some(point) => point,
             None => {
                 let run = || {
@@ -334,16 +343,12 @@ impl Bench<'_> {
         };
         let took = point.first_seconds;
         if point.failure.is_none() {
+            let length = (t_span[1] - t_span[0]).abs();
+            point.seconds_per_unit = (took + point.output_seconds) / length;
             let times = self.journal.as_ref().map_or(&[][..], |journal| journal.times(&key));
-            self.jobs.push(Job {
-                curve: i,
-                point: curve.points.len(),
-                size,
-                times: times.to_vec(),
-                key,
-            });
+            self.jobs.push(Job { curve: i, size, times: times.to_vec(), key });
         }
-        curve.points.push(point);
+        curve.insert(point);
         Ok(Some(took))
     }
 
@@ -370,12 +375,37 @@ impl Bench<'_> {
         }
         Ok(())
     }
+
+    /// Runs with the steps that the line between two runs promises, so that what is advised was tried. Slow methods are
+    /// left out.
+    fn come_near(&mut self, lines: &mut [Line<'_>]) -> Result<(), CliError> {
+        for &error in self.effort.wanted {
+            let of = |line: &Line<'_>| line.curve.seconds_to(error);
+            let stays = lines.iter().filter(|line| line.curve.stays && line.curve.order.is_some());
+            let best = stays.filter_map(of).fold(f64::INFINITY, f64::min);
+            for (i, line) in lines.iter_mut().enumerate() {
+                for _ in 0..NEARER {
+                    if of(line).is_none_or(|seconds| seconds > SLOW * best) {
+                        break;
+                    }
+                    let Some(size) = line.curve.reached(error).map(|reached| reached.size()) else {
+                        break;
+                    };
+                    if line.point_of(size).is_some() {
+                        break;
+                    }
+                    line.left.push_front(size);
+                    self.next(i, line)?;
+                }
+            }
+        }
+        Ok(())
+    }
 }
 
 /// One run to be timed, round after round.
 struct Job {
     curve: usize,
-    point: usize,
     size: Size,
     times: Vec<f64>,
     key: String,

@@ -17,7 +17,7 @@ fn ideal(hs: &[f64]) -> Curve {
             h,
             error: h.powi(4),
             seconds_per_unit: 1.0 / h,
-            ..WorkPoint::new([0.0, h], Size::Steps(1))
+            ..WorkPoint::new([0.0, 1.0], Size::Steps((1.0 / h).round() as u64))
         })
         .collect();
     curve

@@ -144,6 +144,36 @@ fn an_error_that_is_asked_for_is_a_goal() {
     assert!(pruned.iter().flat_map(|curve| &curve.points).all(timed));
 }
 
+/// What is advised was run: its error is not larger than the one that is asked for.
+#[test]
+fn the_steps_that_are_advised_were_taken() {
+    let folder = Folder::new();
+    folder.write("scene.toml", SCENE);
+    let args = "compare scene.toml --out out --quick --repeat 1 --error 1e-5,1e-7,1e-10 --methods";
+    let methods = "rkmk4 exp,rk4,taylor8,taylor12,rkmk dopri5 exp,rkmk dop853 exp,cf4,rk dop853";
+    let args: Vec<&str> = args.split(' ').chain([methods]).collect();
+    folder.lieflow(&args).ok();
+    let json = folder.json("out/speed.json");
+    let label = |curve: &serde_json::Value| {
+        let parts = ["method", "tableau", "map"].map(|key| curve[key].as_str());
+        let name: Vec<_> = parts.into_iter().flatten().collect();
+        name.join(" ") + if curve["adaptive"] == true { ", adaptive" } else { "" }
+    };
+    let points = |name: &str| {
+        let curve = json["curves"].as_array().unwrap().iter().find(|curve| label(curve) == name);
+        curve.expect(name)["points"].as_array().unwrap().clone()
+    };
+    for answer in json["answers"].as_array().unwrap() {
+        let error = answer["error"].as_f64().unwrap();
+        for found in ["best", "next", "leaving"].map(|key| &answer[key]) {
+            let Some(name) = found["method"].as_str() else { continue };
+            let run = points(name).into_iter().find(|p| p["h"] == found["h"]);
+            let run = run.unwrap_or_else(|| panic!("{found} was not run"));
+            assert!(run["error"].as_f64().unwrap() <= error, "{found}: {run}");
+        }
+    }
+}
+
 #[test]
 fn an_invariant_may_be_kept_for_long_times() {
     let folder = Folder::new();
