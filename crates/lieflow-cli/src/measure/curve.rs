@@ -296,6 +296,17 @@ impl Curve {
     /// Where this error is reached soonest among what passes. A run that is more accurate may pass where the
     /// soonest does not.
     pub fn reached_where(&self, error: f64, pass: impl Fn(&Reached) -> bool) -> Option<Reached> {
+        let passing = self.all_that_reach(error).into_iter().filter(pass);
+        passing.min_by(|a, b| a.seconds.total_cmp(&b.seconds))
+    }
+
+    /// The largest steps that reach this error, by a run or between two, and then the runs with smaller steps that do.
+    pub(super) fn all_that_reach(&self, error: f64) -> Vec<Reached> {
+        let found = self.largest_that_reach(error);
+        found.map_or_else(Vec::new, |(largest, smaller)| [vec![largest], smaller].concat())
+    }
+
+    fn largest_that_reach(&self, error: f64) -> Option<(Reached, Vec<Reached>)> {
         // Nobody can tell who reaches an error below the floor.
         if error < self.floor {
             return None;
@@ -357,8 +368,7 @@ impl Curve {
         let between = if is_run { of_run(&b) } else { between };
         // Where a run costs little more than its beginning, a more accurate one may be as fast.
         let measured = runs[after..].iter().filter(|p| p.error <= error).map(of_run);
-        let passing = core::iter::once(between).chain(measured).filter(pass);
-        passing.min_by(|a, b| a.seconds.total_cmp(&b.seconds))
+        Some((between, measured.collect()))
     }
 
     /// The time per unit of simulated time at which this error is reached.

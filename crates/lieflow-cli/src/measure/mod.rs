@@ -376,25 +376,18 @@ impl Bench<'_> {
         Ok(())
     }
 
-    /// Runs with the steps that the line between two runs promises, so that what is advised was tried. Slow methods are
-    /// left out.
+    /// Runs with the steps that the line between two runs promises, so that what is advised was tried.
     fn come_near(&mut self, lines: &mut [Line<'_>]) -> Result<(), CliError> {
         for &error in self.effort.wanted {
-            let of = |line: &Line<'_>| line.curve.seconds_to(error);
-            let stays = lines.iter().filter(|line| line.curve.stays && line.curve.order.is_some());
-            let best = stays.filter_map(of).fold(f64::INFINITY, f64::min);
             for (i, line) in lines.iter_mut().enumerate() {
                 for _ in 0..NEARER {
-                    if of(line).is_none_or(|seconds| seconds > SLOW * best) {
-                        break;
-                    }
-                    let Some(size) = line.curve.reached(error).map(|reached| reached.size()) else {
+                    let Some(reached) = line.curve.all_that_reach(error).first().copied() else {
                         break;
                     };
-                    if line.point_of(size).is_some() {
+                    if line.point_of(reached.size()).is_some() {
                         break;
                     }
-                    line.left.push_front(size);
+                    line.left.push_front(reached.size());
                     self.next(i, line)?;
                 }
             }
