@@ -52,6 +52,8 @@ pub struct Facts {
     /// True if a step stays on M up to rounding. Then the driver corrects the state to M from time to time
     /// ([`Action::restore`](crate::Action::restore)). The state of other methods is not corrected.
     pub stays_on_manifold: bool,
+    /// True if all stages are within a step, and none is at its start or end.
+    pub stages_within: bool,
 }
 
 impl Facts {
@@ -68,6 +70,7 @@ impl Facts {
             step_with_error: unknown,
             dense_evaluations: [Some(0), None],
             stays_on_manifold: true,
+            stages_within: false,
         }
     }
 
@@ -77,6 +80,11 @@ impl Facts {
         let step = StepCost { evaluations, maps: Some(maps) };
         let dense_evaluations = [Some(0), evaluations];
         Facts { step, step_with_error: step, dense_evaluations, ..self }
+    }
+
+    /// All stages are within a step, as those at Gauss–Legendre nodes.
+    pub(crate) const fn stages_within(self) -> Self {
+        Facts { stages_within: true, ..self }
     }
 
     /// Sets the order of the error estimate of a tableau; `None` for a tableau without an embedded row.

@@ -247,6 +247,9 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
     ///
     /// Example: the knots of sampled data. f(t) is the value after the jump, in the direction of the run: in a run backward it
     /// is the value at earlier times. The step that ends there evaluates f a few rounding units before t, the next step at t.
+    /// Methods whose stages are all within a step ([`Facts::stages_within`](crate::methods::Facts::stages_within)), such as
+    /// Magnus methods, do so by themselves. With other methods the state misses 4 ε|t| of time at each stop, as a part of the
+    /// time's own rounding: let the times of many stops begin near 0.
     /// The times may be in any order, and also outside the span.
     pub fn stops(mut self, times: impl Into<Vec<f64>>) -> Self {
         self.settings.stops = times.into();

@@ -166,6 +166,8 @@ impl Timeline {
         if self.t == stop {
             return Ok(());
         }
+        // Where all stages are within a step, none is at the stop.
+        let jumps = jumps && !self.facts.stages_within;
         match &mut self.pacer {
             Pacer::Equal { .. } => self.equal_step(run.points(), stop, jumps),
             Pacer::ByError(_) => self.chosen_steps(run, (stop, jumps), reach),

@@ -498,3 +498,21 @@ fn a_jump_at_the_end_is_not_stepped_on() {
         }
     }
 }
+
+/// Methods whose stages are all within a step lose no time at stops, also where t is large: a constant field, samples of
+/// 100 Hz, and times of a clock.
+#[test]
+fn no_time_is_lost_at_stops() {
+    use lieflow::methods::magnus::{Magnus4, Magnus8};
+    use nalgebra::Matrix3;
+    let turn = Flow::of_time(So3::new(), LeftTranslation, |_: f64, v: &mut Vector3<f64>| v.z = 1.0);
+    let t0 = 1.7e9;
+    let stops: Vec<f64> = (1..100).map(|k| t0 + 0.01 * f64::from(k)).collect();
+    let solve = |end: f64| Solve::new(&turn, &Magnus4, [t0, end]).dt(0.01).stops(stops.clone());
+    let angle = |y: &Matrix3<f64>| y[(1, 0)].atan2(y[(0, 0)]);
+    let run = solve(t0 + 1.0).run(Matrix3::identity()).expect("a run");
+    assert!((angle(&run.y) - 1.0).abs() < 1e-12, "{}", angle(&run.y));
+    let run = Solve::new(&turn, &Magnus8, [t0 + 1.0, t0]).dt(0.02).stops(stops);
+    let run = run.run(Matrix3::identity()).expect("a run");
+    assert!((angle(&run.y) + 1.0).abs() < 1e-12, "{}", angle(&run.y));
+}

@@ -145,7 +145,7 @@ macro_rules! magnus_method {
 
             fn facts(&self, _: &P) -> crate::methods::Facts {
                 let maps = crate::methods::MapCounts { psi: 1, dpsi_inv: 0, brackets: $brackets };
-                crate::methods::Facts::of_order($order).cost(Some($s), maps)
+                crate::methods::Facts::of_order($order).cost(Some($s), maps).stages_within()
             }
             fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
                 MagnusWork::new(problem, &$psi, like)

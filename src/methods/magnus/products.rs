@@ -151,7 +151,7 @@ where
 
     fn facts(&self, _: &P) -> Facts {
         let maps = MapCounts { psi: F as u64, ..MapCounts::default() };
-        Facts::of_order(self.0.order).cost(Some(S as u64), maps)
+        Facts::of_order(self.0.order).cost(Some(S as u64), maps).stages_within()
     }
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
         Ok((MagnusWork::new(problem, &Exp, like)?, like.clone()))
