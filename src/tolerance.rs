@@ -193,12 +193,6 @@ impl Tolerance {
         Ok(PartTolerance::new(rtol, atol)?.into())
     }
 
-    /// rtol = 1 and atol = 0, by the same rule: an error ratio is then a relative size.
-    pub(crate) fn relative(&self) -> Self {
-        let part = PartTolerance { rtol: 1.0, atol: 0.0, components: Vec::new() };
-        Tolerance::from(part).by(self.rule)
-    }
-
     /// One tolerance for each part of the points, in their order.
     ///
     /// # Errors
@@ -292,7 +286,16 @@ pub struct Scales<'a> {
     next: usize,
 }
 
+/// rtol = 1 and atol = 0.
+static RELATIVE: [PartTolerance; 1] =
+    [PartTolerance { rtol: 1.0, atol: 0.0, components: Vec::new() }];
+
 impl<'a> Scales<'a> {
+    /// rtol = 1 and atol = 0 for each part: an error ratio is then a relative size.
+    #[inline]
+    pub(crate) fn relative() -> Self {
+        Scales { parts: &RELATIVE, next: 0 }
+    }
     /// The tolerance of the next part.
     #[inline]
     pub fn part(&mut self) -> &'a PartTolerance {

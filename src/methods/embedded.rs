@@ -17,7 +17,7 @@ use crate::groups::LieAlgebra;
 use crate::problems::{AlgOf, PointOf, Problem, ScalarOf};
 use crate::scalar::{Real, smaller};
 use crate::space::{Gap, Metric};
-use crate::tolerance::{Rule, Tolerance, ratio};
+use crate::tolerance::{Rule, Scales, Tolerance, ratio};
 
 /// A method whose steps have an error estimate. [`Facts`](super::Facts) has the order of the estimate and its cost.
 pub trait Embedded<P: Problem>: Method<P> {
@@ -101,13 +101,19 @@ pub(super) fn ratio_between<S: Real, M: Metric<Scalar = S>>(
     to: &M,
 ) -> S {
     let weight = S::lit(weight);
-    let error = weight * to.distance(other);
     let ratio = match tolerance.rule() {
-        Rule::PerLength => ratio(error, tolerance.per_length(to.distance(from))),
+        Rule::PerLength => {
+            ratio(weight * to.distance(other), tolerance.per_length(to.distance(from)))
+        }
         Rule::PerStep => {
             weight * to.error_ratio(Gap::to(other).of_step_from(from), &mut tolerance.scales())
         }
     };
-    let may_be_rounding = (error - S::lit(8.0 * S::EPSILON) * to.size()).all_below(0.0);
+    if (ratio - S::lit(ROUNDING)).all_below(0.0) {
+        return ratio;
+    }
+    // The rounding of a large part says nothing of the others.
+    let relative = weight * to.error_ratio(Gap::to(other), &mut Scales::relative());
+    let may_be_rounding = (relative - S::lit(8.0 * S::EPSILON)).all_below(0.0);
     if may_be_rounding { smaller(ratio, S::lit(ROUNDING)) } else { ratio }
 }

@@ -16,7 +16,7 @@ use crate::methods::{
 use crate::problems::{AlgOf, PointOf, Problem, ScalarOf};
 use crate::scalar::{Real, smaller};
 use crate::space::{Metric, check_within_reach};
-use crate::tolerance::{Rule, Tolerance};
+use crate::tolerance::{Rule, Scales, Tolerance};
 
 /// How far from M, relative to y, a step may move because f is not in 𝔤. Rounding of f moves it less.
 const OFF_BY_A_STEP: f64 = 1e-9;
@@ -90,8 +90,8 @@ type AttemptOf<P, M> = for<'a> fn(&M, &P, Attempt<'a, P>, &mut <M as Method<P>>:
 /// What an adaptive run needs from its method.
 pub(super) struct Estimator<P: Problem, M: Method<P>> {
     attempt: AttemptOf<P, M>,
-    /// How fast v moves y. The tolerance is [`relative`](Rates::relative).
-    rate: fn(&P, &AlgOf<P>, &PointOf<P>, &Tolerance) -> f64,
+    /// How fast v moves y.
+    rate: fn(&P, &AlgOf<P>, &PointOf<P>, Rule) -> f64,
 }
 
 impl<P: Problem, M: Method<P>> Clone for Estimator<P, M> {
@@ -107,13 +107,13 @@ where
 {
     pub(super) fn of_method() -> Self {
         // Where sizes count, that of a translation is relative to the vector that it moves, unless this is 0.
-        let rate = |problem: &P, v: &AlgOf<P>, y: &PointOf<P>, relative: &Tolerance| {
+        let rate = |problem: &P, v: &AlgOf<P>, y: &PointOf<P>, rule| {
             let (group, action) = (problem.group(), problem.action());
             let rate = group.norm(v);
-            match relative.rule() {
+            match rule {
                 Rule::PerLength => rate.into(),
                 Rule::PerStep => {
-                    smaller(rate, action.error_ratio(group, v, y, &mut relative.scales())).into()
+                    smaller(rate, action.error_ratio(group, v, y, &mut Scales::relative())).into()
                 }
             }
         };
@@ -126,8 +126,6 @@ where
 struct Rates<P: Problem, M: Method<P>> {
     estimator: Estimator<P, M>,
     tolerance: Tolerance,
-    /// rtol = 1 and atol = 0, by the same rule.
-    relative: Tolerance,
     f: AlgOf<P>,
 }
 
@@ -253,8 +251,7 @@ impl<'a, P: Problem, M: Method<P>> Points<'a, P, M> {
             None => None,
             Some((tolerance, estimator)) => {
                 error_order = Some(facts.order_of_estimate()?);
-                let (tolerance, relative) = (tolerance.clone(), tolerance.relative());
-                Some(Rates { estimator, tolerance, relative, f: problem.group().zero() })
+                Some(Rates { estimator, tolerance: tolerance.clone(), f: problem.group().zero() })
             }
         };
         let work = method.work(problem, &y)?;
@@ -411,18 +408,18 @@ impl<P: Problem, M: Method<P>> AnyPoints for Points<'_, P, M> {
     fn rate(&mut self, t: f64) -> f64 {
         let Points { problem, y, rates, field, .. } = self;
         let problem = &**problem;
-        rates.as_mut().map_or(0.0, |Rates { estimator, relative, f, .. }| {
+        rates.as_mut().map_or(0.0, |Rates { estimator, tolerance, f, .. }| {
             problem.f(ScalarOf::<P>::lit(t), y, f, field);
-            (estimator.rate)(problem, f, y, relative)
+            (estimator.rate)(problem, f, y, tolerance.rule())
         })
     }
     fn change_of_rate(&mut self, t: f64) -> f64 {
         let Points { problem, to, rates, v, field, .. } = self;
         let problem = &**problem;
-        rates.as_mut().map_or(0.0, |Rates { estimator, relative, f, .. }| {
+        rates.as_mut().map_or(0.0, |Rates { estimator, tolerance, f, .. }| {
             problem.f(ScalarOf::<P>::lit(t), to, v, field);
             problem.group().axpy(ScalarOf::<P>::lit(-1.0), f, v);
-            (estimator.rate)(problem, v, to, relative)
+            (estimator.rate)(problem, v, to, tolerance.rule())
         })
     }
     fn correct(&mut self, cadence: &mut Cadence, stats: &mut Stats) -> Result<(), Error> {

@@ -1,6 +1,7 @@
 //! What the error of a step is compared with, and that a run keeps to it.
 
 use lieflow::actions::{LeftTranslation, Linear};
+use lieflow::catalog::MethodsByName;
 use lieflow::groups::{Product, Se3, So3, Translations};
 use lieflow::maps::Exp;
 use lieflow::methods::tableau::{BS3, DOPRI5};
@@ -363,4 +364,25 @@ fn the_unit_of_a_vector_does_not_count() {
     }
     let turned = V::new(10f64.cos(), 10f64.sin(), 0.0);
     assert!((one.y - turned).xy().norm() < 1e-4);
+}
+
+/// A part with a large number does not hide the errors of the others, whatever method estimates them: an attitude beside a
+/// position of an astronomical unit in metres, which does not move.
+#[test]
+fn a_large_part_hides_no_error() {
+    let group = Product(So3::<f64>::new(), free());
+    let problem = Flow::new(group, LeftTranslation, |t: f64, _: &Both, v: &mut (V, V)| {
+        *v = (V::new(t.cos(), (2.0 * t).sin(), 1.0), V::zeros());
+    });
+    for method in ["cf43", "rkmk4", "cf4", "cg3", "rkmk dopri5"] {
+        let method = problem.method(&method.parse().expect("a method")).expect("it fits");
+        let end = |position: f64, tolerance: f64| {
+            let start = (Matrix3::identity(), V::x() * position);
+            let solve = Solve::new(&problem, &method, [0.0, 10.0]).tolerances(tolerance, tolerance);
+            solve.run(start).expect("a run").y.0
+        };
+        let exact = end(1.0, 1e-12);
+        let (near, far) = ((end(1.0, 1e-9) - exact).norm(), (end(1.5e11, 1e-9) - exact).norm());
+        assert!(far < 1e-6 && near < 1e-6, "{near:e} {far:e}");
+    }
 }
