@@ -59,6 +59,8 @@ pub struct DmvWork {
     inertia: [f64; 3],
     sigma: [[f64; 5]; 4],
     delta: [[f64; 5]; 4],
+    /// The power of two that the inertia is divided by, so that no product of many moments leaves the range of numbers.
+    unit: f64,
     iterations: u64,
 }
 
@@ -66,6 +68,8 @@ impl DmvWork {
     #[rustfmt::skip]
     fn new(inverse_inertia: Vector3<f64>) -> Self {
         let i = [0, 1, 2].map(|k| 1.0 / inverse_inertia[k]);
+        let unit = i[0].max(i[1]).max(i[2]).log2().round().clamp(-1000.0, 1000.0).exp2();
+        let i = i.map(|i| i / unit);
         let d = i[0] * i[1] * i[2];
         let s = |k: i32| i.iter().map(|i| i.powi(k)).sum::<f64>();
         let x = |k: i32| i.iter().map(|i| i.powi(-k)).sum::<f64>();
@@ -123,7 +127,7 @@ impl DmvWork {
                 (165.0 * s1 - d * m13 - 9.0 * m21 - 145.0 * d * x2) / (45360.0 * d2),
             ],
         ];
-        DmvWork { inertia: i, sigma, delta, iterations: 0 }
+        DmvWork { inertia: i, sigma, delta, unit, iterations: 0 }
     }
 
     /// Σ over the degrees below order/2 of c_ab κᵃηᵇ.
@@ -154,9 +158,11 @@ impl Dmv {
         m: &Vector3<S>,
     ) -> Result<Vector3<S>, StepError> {
         let l = S::lit;
-        // h² and m² may leave the range where hm does not.
+        // h² and m² may leave the range where hm does not. Momenta and moments are divided by the same unit.
         let half = l(0.5);
+        let (h, unit) = (h * l(1.0 / w.unit), l(w.unit));
         let turn = m.map(|m| h * m);
+        let inverse = inverse.map(|x| x * unit);
         let squares = [turn[0] * turn[0], turn[1] * turn[1], turn[2] * turn[2]];
         let kappa = half * (squares[0] + squares[1] + squares[2]);
         let eta =

@@ -424,3 +424,22 @@ fn table_3_of_the_paper() {
         }
     }
 }
+
+/// The unit of inertia and momentum changes nothing: the moments of the Earth in kg m², and those of a molecule.
+#[test]
+fn the_unit_of_inertia_does_not_count() {
+    use lieflow::{Solve, problems::RigidBody};
+    use nalgebra::Vector3;
+    for method in [DMV2, DMV4, DMV6, DMV8, DMV10] {
+        let end = |unit: f64| {
+            let body = RigidBody::new([1.0, 1.3, 1.7].map(|j: f64| j * unit)).expect("a body");
+            let m = Vector3::new(0.4, 0.3, 0.9) * unit;
+            let run = Solve::new(&body, &method, [0.0, 10.0]).steps(40).run(m).expect("a run");
+            run.y / unit
+        };
+        let one = end(1.0);
+        for power in [-160, -110, 100, 126] {
+            assert!((end(2f64.powi(power)) - one).norm() < 1e-14, "{method:?}, 2^{power}");
+        }
+    }
+}
