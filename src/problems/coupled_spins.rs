@@ -89,8 +89,8 @@ impl<S: Real> Couplings<S> {
 
 /// How couplings depend on time: a closure `|t, couplings|` that writes those that do, or [`Constant`].
 pub trait CouplingsAt<S>: Send + Sync {
-    /// Writes the couplings at t.
-    fn write(&self, t: S, couplings: &mut Couplings<S>);
+    /// couplings ← those at t. `constant` are those that the problem was made with.
+    fn write(&self, t: S, constant: &Couplings<S>, couplings: &mut Couplings<S>);
 }
 
 /// Couplings that do not depend on time.
@@ -99,12 +99,15 @@ pub struct Constant;
 
 impl<S> CouplingsAt<S> for Constant {
     #[inline]
-    fn write(&self, _: S, _: &mut Couplings<S>) {}
+    fn write(&self, _: S, _: &Couplings<S>, _: &mut Couplings<S>) {}
 }
 
-impl<S, F: Fn(S, &mut Couplings<S>) + Send + Sync> CouplingsAt<S> for F {
+impl<S: Real, F: Fn(S, &mut Couplings<S>) + Send + Sync> CouplingsAt<S> for F {
     #[inline]
-    fn write(&self, t: S, couplings: &mut Couplings<S>) {
+    fn write(&self, t: S, constant: &Couplings<S>, couplings: &mut Couplings<S>) {
+        // What was written at another time is no part of f(t).
+        couplings.bonds.clone_from(&constant.bonds);
+        couplings.sites.clone_from(&constant.sites);
         self(t, couplings);
     }
 }
@@ -181,7 +184,7 @@ impl<S: Real, C: CouplingsAt<S>> Problem for CoupledSpins<S, C> {
         self.couplings.clone()
     }
     fn f(&self, t: S, s: &Box<[V<S>]>, v: &mut Box<[V<S>]>, couplings: &mut Couplings<S>) {
-        self.at.write(t, couplings);
+        self.at.write(t, &self.couplings, couplings);
         couplings.fields(s, v);
         if self.damping != S::lit(0.0) {
             for (v, s) in v.iter_mut().zip(s) {
