@@ -3,6 +3,7 @@
 
 use core::f64::consts::{PI, TAU};
 
+use lieflow::dense::multiply;
 use lieflow::floquet::{Floquet, monodromy};
 use lieflow::groups::AlgebraMatrix;
 use lieflow::methods::magnus::Magnus6;
@@ -91,11 +92,24 @@ impl Hill {
         })
     }
 
-    /// The multipliers of a period from t = 0, and the trace of its monodromy.
-    fn multipliers(&self) -> Option<(Floquet, f64)> {
+    /// The multipliers of a period from t = 0, the trace of its monodromy, and whether the powers of that stay bounded.
+    fn multipliers(&self) -> Option<(Floquet, f64, bool)> {
         let g = monodromy(&self.equation().ok()?, &Magnus6, [0.0, self.period], STEPS).ok()?;
-        Some((Floquet::of(&g).ok()?, trace(&g)))
+        Some((Floquet::of(&g).ok()?, trace(&g), stays_bounded(g.as_ref().to_owned())))
     }
+}
+
+/// Do the powers of a monodromy stay bounded? Where two multipliers meet on the circle, they may grow as the number of
+/// periods. Rounding of the multipliers does not matter within so many of them.
+fn stays_bounded(mut power: Mat<f64>) -> bool {
+    let mut sizes = [0.0; 2];
+    for (size, squarings) in sizes.iter_mut().zip([20, 10]) {
+        for _ in 0..squarings {
+            power = multiply(power.as_ref(), power.as_ref());
+        }
+        *size = power.norm_max();
+    }
+    sizes[1] < 30.0 * sizes[0]
 }
 
 impl System for Hill {
@@ -133,7 +147,7 @@ impl System for Hill {
         Figure::Lines("solution")
     }
     fn facts(&self) -> Vec<Property> {
-        let Some((floquet, trace)) = self.multipliers() else { return Vec::new() };
+        let Some((floquet, trace, is_bounded)) = self.multipliers() else { return Vec::new() };
         let radius = floquet.spectral_radius();
         // Rounding of the multipliers is no growth.
         let is_one = (radius - 1.0).abs() < ROUNDING;
@@ -143,7 +157,7 @@ impl System for Hill {
             Property::of("trace_of_the_monodromy", trace),
             Property::of("largest_multiplier", radius),
             Property::of("growth_rate", growth),
-            Property::answer("stable", radius < 1.0 + OFF_THE_CIRCLE),
+            Property::answer("stable", radius < 1.0 + OFF_THE_CIRCLE && is_bounded),
         ]
     }
 }

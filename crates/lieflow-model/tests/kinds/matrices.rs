@@ -86,6 +86,19 @@ fn mathieus_characteristic_values() {
     assert_eq!([stable(1.0), stable(2.5)], [0.0, 1.0]);
 }
 
+/// Two masses with a spring between them move away together: a double multiplier 1, and a solution that grows with t.
+#[test]
+fn a_translation_is_not_stable() {
+    for (a, stable) in [("[[1, -1], [-1, 1]]", 0.0), ("[[1.3, 0], [0, 1.3]]", 1.0)] {
+        let problem = format!("kind = \"hill\"\na = {a}\nq = [[0, 0], [0, 0]]\nperiod = 2.0");
+        let of = scene(&problem, "name = \"magnus6\"", "t_span = [0, 2]\ndt = 0.1", "[\"map\"]");
+        assert_eq!(fact(&of, "stable"), stable, "{a}");
+    }
+    let free = "kind = \"mathieu\"\na = 0\nq = 0";
+    let of = scene(free, "name = \"magnus6\"", "t_span = [0, 2]\ndt = 0.1", "[\"map\"]");
+    assert_eq!(fact(&of, "stable"), 0.0);
+}
+
 /// Without a drive the solutions of Hill's equation are cosines.
 #[test]
 fn hills_equation_without_a_drive() {
