@@ -206,7 +206,9 @@ fn nearest_zero(g: impl Fn(f64) -> f64, t: f64, run: &Shown<'_>) -> f64 {
     let by_slope = 2.0 * aside * at_t / (g(t + aside) - g(t - aside));
     // Where the slope changes it tells little, so the sign of g decides.
     let first = match by_slope.abs() {
-        distance if distance.is_finite() => distance.max(f64::EPSILON * t.abs().max(run.step)),
+        distance if distance.is_finite() => {
+            distance.max(f64::EPSILON * t.abs().max(run.step)).min(run.step)
+        }
         _ => aside,
     };
     let on_side = |side: f64| {

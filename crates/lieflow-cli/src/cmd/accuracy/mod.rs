@@ -175,6 +175,14 @@ impl<'a> Check<'a> {
         let zeros = self.scene().events.iter().zip(&apart.events);
         let other_zeros = zeros.map(|(event, zeros)| {
             if zeros.agree() {
+                if !self.is_exact && zeros.distance > self.run.step {
+                    return Some(format!(
+                        "event `{}`: its zeros are up to {} apart in two runs, more than a step, so that zeros are missed or have \
+                         no meaning: take smaller steps or a smaller tolerance",
+                        event.name,
+                        rough(zeros.distance)
+                    ));
+                }
                 let is_none = self.is_exact && zeros.distance.is_nan();
                 return is_none.then(|| {
                     format!(
