@@ -83,7 +83,7 @@ impl Facts {
     }
 
     /// All stages are within a step, as those at Gauss–Legendre nodes.
-    pub(crate) const fn stages_within(self) -> Self {
+    pub const fn stages_within(self) -> Self {
         Facts { stages_within: true, ..self }
     }
 

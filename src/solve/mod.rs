@@ -246,10 +246,12 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
     /// Lets a step end at each of these times, where f or one of its derivatives jumps.
     ///
     /// Example: the knots of sampled data. f(t) is the value after the jump, in the direction of the run: in a run backward it
-    /// is the value at earlier times. The step that ends there evaluates f a few rounding units before t, the next step at t.
-    /// Methods whose stages are all within a step ([`Facts::stages_within`](crate::methods::Facts::stages_within)), such as
-    /// Magnus methods, do so by themselves. With other methods the state misses 4 ε|t| of time at each stop, as a part of the
-    /// time's own rounding: let the times of many stops begin near 0.
+    /// is the value at earlier times. The next step evaluates f at t.
+    ///
+    /// The step that ends there is 4 ε|t| shorter than the way, so that f is not evaluated at t. The state misses this much of
+    /// time at each stop: let the times of many stops begin near 0. Methods whose stages are all within a step, such as Magnus
+    /// methods, miss nothing ([`Facts`](crate::methods::Facts)).
+    ///
     /// The times may be in any order, and also outside the span.
     pub fn stops(mut self, times: impl Into<Vec<f64>>) -> Self {
         self.settings.stops = times.into();
