@@ -52,7 +52,8 @@ pub struct Facts {
     /// True if a step stays on M up to rounding. Then the driver corrects the state to M from time to time
     /// ([`Action::restore`](crate::Action::restore)). The state of other methods is not corrected.
     pub stays_on_manifold: bool,
-    /// True if all stages are within a step, and none is at its start or end.
+    /// True if f is evaluated only within a step, not at its start or end, also for points between. Then a step to a stop has
+    /// its whole size ([`Solve::stops`](crate::Solve::stops)).
     pub stages_within: bool,
 }
 
@@ -82,7 +83,7 @@ impl Facts {
         Facts { step, step_with_error: step, dense_evaluations, ..self }
     }
 
-    /// All stages are within a step, as those at Gauss–Legendre nodes.
+    /// Says that f is evaluated only within a step, as at Gauss–Legendre nodes.
     pub const fn stages_within(self) -> Self {
         Facts { stages_within: true, ..self }
     }

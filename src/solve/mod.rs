@@ -249,7 +249,7 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
     /// is the value at earlier times. The next step evaluates f at t.
     ///
     /// The step that ends there is 4 ε|t| shorter than the way, so that f is not evaluated at t. The state misses this much of
-    /// time at each stop: let the times of many stops begin near 0. Methods whose stages are all within a step, such as Magnus
+    /// time at each stop: let the times of many stops begin near 0. Methods that evaluate f only within a step, such as Magnus
     /// methods, miss nothing ([`Facts`](crate::methods::Facts)).
     ///
     /// The times may be in any order, and also outside the span.

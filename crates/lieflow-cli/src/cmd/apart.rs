@@ -104,6 +104,12 @@ impl ZerosApart {
     pub(super) fn agree(&self) -> bool {
         self.own.sure <= self.other.possible && self.other.sure <= self.own.possible
     }
+
+    /// Are zeros of the same number farther apart than zeros are on average, in a run of this length? Then they are not the
+    /// same ones.
+    pub(super) fn are_others(&self, length: f64) -> bool {
+        self.distance * self.own.possible as f64 > length
+    }
 }
 
 impl Apart {
@@ -204,13 +210,9 @@ fn nearest_zero(g: impl Fn(f64) -> f64, t: f64, run: &Shown<'_>) -> f64 {
     }
     let aside = SLOPE * run.step;
     let by_slope = 2.0 * aside * at_t / (g(t + aside) - g(t - aside));
-    // Where the slope changes it tells little, so the sign of g decides.
-    let first = match by_slope.abs() {
-        distance if distance.is_finite() => {
-            distance.max(f64::EPSILON * t.abs().max(run.step)).min(run.step)
-        }
-        _ => aside,
-    };
+    // Where the slope changes it tells little, so the sign of g decides. At a pole it tells nothing.
+    let rounding = f64::EPSILON * t.abs().max(run.step);
+    let first = if by_slope.abs() <= run.step { by_slope.abs().max(rounding) } else { rounding };
     let on_side = |side: f64| {
         let passed = |distance: f64| g(t + side * distance) * at_t <= 0.0;
         let (mut before, mut after) = (0.0, first);

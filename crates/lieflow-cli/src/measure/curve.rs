@@ -302,19 +302,14 @@ impl Curve {
 
     /// The largest steps that reach this error, by a run or between two, and then the runs with smaller steps that do.
     pub(super) fn all_that_reach(&self, error: f64) -> Vec<Reached> {
-        let found = self.largest_that_reach(error);
-        found.map_or_else(Vec::new, |(largest, smaller)| [vec![largest], smaller].concat())
-    }
-
-    fn largest_that_reach(&self, error: f64) -> Option<(Reached, Vec<Reached>)> {
         // Nobody can tell who reaches an error below the floor.
         if error < self.floor {
-            return None;
+            return Vec::new();
         }
         let runs: Vec<&WorkPoint> =
             self.points.iter().filter(|p| p.error >= 0.0 && p.seconds_per_unit > 0.0).collect();
         let log_error = |p: &WorkPoint| self.error(p).ln();
-        let after = runs.iter().position(|p| p.error <= error)?;
+        let Some(after) = runs.iter().position(|p| p.error <= error) else { return Vec::new() };
         let b = runs[after];
         // The coarsest run may do, and one that is far off says nothing of what lies behind it.
         let before = after.checked_sub(1).map(|before| runs[before]);
@@ -368,7 +363,7 @@ impl Curve {
         let between = if is_run { of_run(&b) } else { between };
         // Where a run costs little more than its beginning, a more accurate one may be as fast.
         let measured = runs[after..].iter().filter(|p| p.error <= error).map(of_run);
-        Some((between, measured.collect()))
+        core::iter::once(between).chain(measured).collect()
     }
 
     /// The time per unit of simulated time at which this error is reached.

@@ -9,7 +9,7 @@ use lieflow::groups::{AlgebraMatrix, MatrixGroup};
 use lieflow::problems::Flow;
 use lieflow::problems::beam::{Element, transfer_map, tunes};
 
-use super::entries::{rows, symplectic_defect};
+use super::entries::{power, rows, symplectic_defect};
 use super::flow::OnMatrices;
 use super::matrix::MatrixAction;
 use super::prelude::*;
@@ -174,19 +174,6 @@ impl BeamLine {
 fn inverse(g: &Mat<f64>) -> Mat<f64> {
     let sign = |i: usize, j: usize| if i / 2 == j / 2 { 1.0 } else { -1.0 };
     Mat::from_fn(4, 4, |i, j| sign(i, j) * g[((j + 2) % 4, (i + 2) % 4)])
-}
-
-/// gᵏ by squarings.
-fn power(mut g: Mat<f64>, mut k: u64) -> Mat<f64> {
-    let mut product = Mat::identity(4, 4);
-    while k > 0 {
-        if k % 2 == 1 {
-            product = multiply(g.as_ref(), product.as_ref());
-        }
-        g = multiply(g.as_ref(), g.as_ref());
-        k /= 2;
-    }
-    product
 }
 
 impl System for BeamLine {

@@ -134,6 +134,19 @@ pub(super) fn trace(x: &Mat<f64>) -> f64 {
     diagonal(x).sum()
 }
 
+/// gᵏ by squarings.
+pub(super) fn power(mut g: Mat<f64>, mut k: u64) -> Mat<f64> {
+    let mut product = Mat::identity(g.nrows(), g.nrows());
+    while k > 0 {
+        if k % 2 == 1 {
+            product = multiply(g.as_ref(), product.as_ref());
+        }
+        g = multiply(g.as_ref(), g.as_ref());
+        k /= 2;
+    }
+    product
+}
+
 /// tr x, tr x², …, tr xⁿ.
 pub(super) fn traces(x: &Mat<f64>) -> impl Iterator<Item = f64> {
     let mut power = Mat::<f64>::identity(x.nrows(), x.nrows());

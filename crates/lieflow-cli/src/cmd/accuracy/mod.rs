@@ -175,10 +175,10 @@ impl<'a> Check<'a> {
         let zeros = self.scene().events.iter().zip(&apart.events);
         let other_zeros = zeros.map(|(event, zeros)| {
             if zeros.agree() {
-                if !self.is_exact && zeros.distance > self.run.step {
+                if zeros.are_others(self.run.length()) {
                     return Some(format!(
-                        "event `{}`: its zeros are up to {} apart in two runs, more than a step, so that zeros are missed or have \
-                         no meaning: take smaller steps or a smaller tolerance",
+                        "event `{}`: its zeros are up to {} apart in two runs, so that zeros are missed or have no meaning: take \
+                         smaller steps or a smaller tolerance",
                         event.name,
                         rough(zeros.distance)
                     ));
@@ -202,7 +202,10 @@ impl<'a> Check<'a> {
             ))
         });
         let other_zeros = other_zeros.collect();
-        let are_wrong = |zeros: &ZerosApart| !zeros.agree() || !zeros.distance.is_finite();
+        let are_wrong = |zeros: &ZerosApart| {
+            let are_others = !zeros.distance.is_finite() || zeros.are_others(self.run.length());
+            !zeros.agree() || are_others
+        };
         let wrong_zeros = apart.events.iter().map(are_wrong).collect();
         let time_error = |zeros: &ZerosApart| {
             // A time is no better than its last digit.
