@@ -14,6 +14,9 @@ use crate::methods::{Attempts, Resize, Step, Streak};
 const REJECTIONS_MAX: u32 = 60;
 /// An exact step with events, or without an end, turns by so many radian.
 const EXACT_TURN: f64 = 1.0;
+/// Other steps turn by so many radian at most, if events have zeros to search for. Then some forty zeros of a function
+/// of the state are in a step, and a search finds twice as many.
+const FARTHEST_TURN: f64 = 64.0;
 
 /// Before a wall, a step that is larger than this part of the way there does not grow.
 const NEAR_WALL: f64 = 0.01;
@@ -32,9 +35,10 @@ struct Sizes {
 }
 
 impl Sizes {
-    fn new(Chooser { controller, control, .. }: &Chooser, stop: f64) -> Self {
+    /// The choice of sizes up to `largest`.
+    fn new(Chooser { controller, control, .. }: &Chooser, stop: f64, largest: f64) -> Self {
         let found = Cell::new([f64::INFINITY, 0.0]);
-        let limits = [control.min_step, control.max_step];
+        let limits = [control.min_step, largest];
         Sizes { controller: *controller, found, stop, limits }
     }
 
@@ -89,13 +93,16 @@ impl Timeline {
         let Pacer::ByError(chooser) = &self.pacer else { return Ok(()) };
         let StepControl { min_step, max_steps, first_step, .. } = chooser.control;
         let mut h = match chooser.h.or(first_step) {
-            _ if chooser.controller.is_exact() => self.exact_step(run.points(), stop),
+            _ if self.is_exact() => self.exact_step(run.points(), stop),
             Some(h) => h,
             None => self.first_step(run.points(), stop),
         };
         let mut in_a_row = 0;
         loop {
             h = h.max(min_step);
+            if in_a_row == 0 && !self.is_exact() {
+                self.see_turns(run.points(), h);
+            }
             let (end, size) = self.propose(h, stop);
             if self.stats.accepted + self.stats.rejected >= max_steps {
                 return Err(self.too_many(size, max_steps));
@@ -106,7 +113,7 @@ impl Timeline {
             let h_to_end = size_to(self.t, end, jumps && end == stop);
             let step = Step { n: self.stats.accepted, t: self.t, h: h_to_end };
             let Pacer::ByError(chooser) = &self.pacer else { return Ok(()) };
-            let sizes = Sizes::new(chooser, stop);
+            let sizes = Sizes::new(chooser, stop, self.largest_size(1.0));
             let streak = self.streak(chooser, (h, end), reach, &sizes);
             let tried = run.attempt(step, end, &streak);
             self.attempted(tried.accepted + 1);
@@ -173,8 +180,7 @@ impl Timeline {
     /// The end and the size of a step of about this size. A step ends at `stop` if that is near. It ends half way to
     /// `stop` if otherwise the next step would be short.
     fn propose(&self, h: f64, stop: f64) -> (f64, f64) {
-        let Pacer::ByError(chooser) = &self.pacer else { return (self.t, 0.0) };
-        let max_step = chooser.control.max_step;
+        let max_step = self.largest_size(FARTHEST_TURN);
         let left = (stop - self.t).abs();
         let h = h.min(max_step);
         if left <= h || (left <= 1.01 * h && left <= max_step) {
@@ -183,6 +189,15 @@ impl Timeline {
         let h = if left < 2.0 * h { 0.5 * left } else { h };
         let end = self.t + h.copysign(stop - self.t);
         (end, (end - self.t).abs())
+    }
+
+    /// The largest size of a step that turns the state by so many radian at most, if events have zeros to search for.
+    fn largest_size(&self, turn: f64) -> f64 {
+        let by_turn = self.turns.as_ref().map_or(f64::INFINITY, |turns| turn * turns.radian);
+        match &self.pacer {
+            Pacer::ByError(chooser) => chooser.control.max_step.min(by_turn),
+            Pacer::Equal { .. } => by_turn,
+        }
     }
 
     /// The streak that an attempt of size h, which ends at `end`, may begin.
@@ -196,11 +211,14 @@ impl Timeline {
         let stop = sizes.stop;
         let size = h.copysign(stop - self.t);
         let is_free = (stop - self.t).abs() >= 2.0 * h && end == self.t + size;
-        if !is_free || controller.hold || controller.is_exact() || wall.is_some() {
+        let is_alone = controller.hold || controller.is_exact() || wall.is_some();
+        if !is_free || is_alone || self.is_long(h) {
             return Streak::ONE;
         }
         let Stats { accepted, rejected, .. } = self.stats;
         let most = steps.min(self.cadence.next).saturating_sub(accepted);
+        let most =
+            self.turns.as_ref().map_or(most, |turns| most.min(turns.next.saturating_sub(accepted)));
         let most = most.min(control.max_steps - accepted - rejected).max(1);
         Streak { most, size, kept: controller.kept, stop, time, resize: Some(sizes) }
     }
@@ -216,6 +234,11 @@ impl Timeline {
         *accepted += tried.accepted;
         *smallest_step = smallest_step.min(least);
         *largest_step = largest_step.max(largest);
+    }
+
+    /// True if steps of any size have no error.
+    fn is_exact(&self) -> bool {
+        matches!(&self.pacer, Pacer::ByError(chooser) if chooser.controller.is_exact())
     }
 
     /// A step of a method that is exact at any size.

@@ -1,14 +1,16 @@
 //! Events: where a function g(t, y) of the solution passes zero.
 //!
-//! After each step g is evaluated at the end of the step. If the step may have two zeros, g is also evaluated at points
-//! within it ([`Event::points`]). Between two neighbours of opposite sign the zero is found by dense output, to rounding
-//! of t (`bracket.rs`).
+//! After each step g is evaluated at the end of the step. Between two neighbours of opposite sign the zero is found by
+//! dense output, to rounding of t (`bracket.rs`).
 //!
-//! Methods of order 10 and more take long steps, in which g may have many zeros. There g is replaced by a polynomial in
-//! t. Its coefficients tell whether it has converged, and its zeros are counted (`roots.rs`). Where g has not
-//! converged the step is halved, five times at most. Points between the zeros of the polynomial separate those of g, which
-//! are then found as above. A step whose values are far from 0 needs one value in its middle: with the end of the step
-//! before it shows how far the parabola through three values is from g.
+//! If the step may have two zeros, g is replaced by a polynomial in t. Its coefficients tell whether it has converged, and
+//! its zeros are counted (`roots.rs`). Where g has not converged the step is halved, five times at most. Points between
+//! the zeros of the polynomial separate those of g, which are then found as above.
+//!
+//! A long step may have many zeros, whatever g is at its ends. Steps are long by methods of order 10 and more, and those
+//! that turn the state by more than a radian, as an exponential does where f is constant. A long step whose values are
+//! far from 0 needs one value in its middle: with the end of the step before it shows how far the parabola through three
+//! values is from g.
 //!
 //! | g | what is found |
 //! |---|---|
@@ -119,9 +121,9 @@ impl<Y> fmt::Debug for Event<'_, Y> {
 /// The number of points within a step where g is evaluated.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Points {
-    /// [`POINTS`] in steps that may have two zeros; in long steps as many as a polynomial needs.
+    /// As many as a polynomial needs, in long steps and in those that may have two zeros.
     AsNeeded,
-    /// So many in each step.
+    /// So many in each step, and as many between them; none but the ends of steps for 0.
     Each(u32),
     /// As many as this says of the step size and of g at the two ends.
     By(fn(f64, [f64; 2]) -> u32),
@@ -136,7 +138,7 @@ pub(super) struct Seen {
     pub(super) before: Option<[f64; 2]>,
     /// True if the sign of g has to be taken again, a little later.
     pub(super) anew: bool,
-    /// In long steps: the level of the polynomials that described g in the step before.
+    /// The level of the polynomials that described g in the last step that needed them.
     pub(super) level: usize,
 }
 
@@ -147,8 +149,6 @@ impl Seen {
     }
 }
 
-/// The number of points within a step where g is evaluated, if the step may have two zeros.
-const POINTS: u32 = 8;
 /// The steps of methods of this order and more are long: each is searched for all zeros of an event.
 pub const LONG_STEPS: usize = 10;
 /// The largest number of points within a step that a caller may ask for ([`Event::points`]).
@@ -204,11 +204,11 @@ impl<'a, Y> Event<'a, Y> {
         self.functions.told = Some(Box::new(told));
         self
     }
-    /// Evaluates g at this many points within every step, at most 100 000.
+    /// Evaluates g at this many points within every step, at most 100 000; with 0 at the ends of steps only.
     ///
-    /// The default is 8 points in steps that may have two zeros, and none in others. A step may have two zeros if |g|
-    /// at one end is at most twice the change of the slope of g over this step and the one before, times the step size.
-    /// Methods of order 10 and more look for all zeros without this, see `docs/driver.md`.
+    /// By default g is evaluated at as many points as a polynomial needs that describes it, in steps that may have two zeros
+    /// and in long steps, see `docs/driver.md`. A step may have two zeros if |g| at one end is at most twice the change of
+    /// the slope of g over this step and the one before, times the step size.
     pub fn points(mut self, points: u32) -> Self {
         self.rule.points = Points::Each(points);
         self
@@ -229,11 +229,20 @@ impl<'a, Y> Event<'a, Y> {
 }
 
 impl EventRule {
-    /// The search for zeros in a step at whose end g is `last`.
+    /// True if it may have zeros.
+    pub(super) fn has_zeros(&self) -> bool {
+        !matches!(self.points, Points::By(_))
+    }
+
+    /// The search for zeros in a step at whose end g is `last`. `turns` says that the state turns by more than a radian.
     #[inline(always)]
-    fn search(&self, span: [f64; 2], last: f64, first_step: bool) -> Search {
+    fn search(&self, span: [f64; 2], last: f64, (first_step, turns): (bool, bool)) -> Search {
         let EventRule { direction, points, has_long_steps, seen, .. } = *self;
-        let is_long = has_long_steps && matches!(points, Points::AsNeeded);
+        let is_long = match points {
+            Points::AsNeeded => has_long_steps || turns,
+            Points::Each(points) => points > 0 && turns,
+            Points::By(_) => false,
+        };
         Search { direction, points, is_long, seen, first_step, span, last }
     }
 
@@ -282,7 +291,7 @@ impl Events {
     /// The events of a run by a method of this order.
     pub(super) fn new(mut all: Vec<EventRule>, order: usize) -> Self {
         all.iter_mut().for_each(|event| event.has_long_steps = order >= LONG_STEPS);
-        let found = Vec::with_capacity(2 * all.len() * (POINTS as usize + 2));
+        let found = Vec::with_capacity(2 * all.len() * roots::MOST);
         Events { all, found }
     }
 
@@ -301,13 +310,13 @@ impl Events {
     #[inline(always)]
     pub(super) fn pass(&mut self, span: [f64; 2], values: impl Iterator<Item = f64>) -> bool {
         for (event, last) in self.all.iter_mut().zip(values) {
-            if !(last.is_finite() && event.search(span, last, false).is_idle()) {
+            if !(last.is_finite() && event.search(span, last, (false, false)).is_idle()) {
                 return false;
             }
             event.next = last;
         }
         for event in &mut self.all {
-            event.seen = event.search(span, event.next, false).seen_at_end();
+            event.seen = event.search(span, event.next, (false, false)).seen_at_end();
         }
         true
     }
@@ -352,10 +361,11 @@ impl Events {
     ) -> Result<(), RunError> {
         self.found.clear();
         let (start, end) = (times.last.t, times.t);
+        let turns = times.is_long(times.last.h);
         let Events { all, found, .. } = self;
         for (index, event) in all.iter_mut().enumerate() {
             let last = event.finite(end, output.event(index, end, None))?;
-            let search = event.search([start, end], last, first_step);
+            let search = event.search([start, end], last, (first_step, turns));
             if search.is_idle() {
                 event.seen = search.seen_at_end();
                 continue;
@@ -395,23 +405,34 @@ impl Search {
     #[inline]
     fn is_idle(&self) -> bool {
         let Seen { value, anew, .. } = self.seen;
-        !anew && !self.is_long && self.points(value) == 0 && passes(value, self.last).is_none()
+        let is_simple = !self.is_long && self.points(value) == 0 && !self.may_have_two(value);
+        !anew && is_simple && passes(value, self.last).is_none()
     }
 
-    /// The number of points within the step where g is evaluated, if g is `first` at its start.
+    /// The number of points within the step that a caller asks for, if g is `first` at its start.
     #[inline]
     fn points(&self, first: f64) -> u32 {
+        let Search { span: [start, end], last, .. } = *self;
+        match self.points {
+            Points::AsNeeded => 0,
+            Points::Each(points) => points,
+            Points::By(points) => points((end - start).abs(), [first, last]).min(POINTS_MAX),
+        }
+    }
+
+    /// True if the step may have two zeros, if g is `first` at its start, and these are searched for.
+    #[inline]
+    fn may_have_two(&self, first: f64) -> bool {
         let Search { seen, span: [start, end], last, .. } = *self;
         match (self.points, seen.before) {
-            (Points::Each(points), _) => points,
-            (Points::By(points), _) => points((end - start).abs(), [first, last]).min(POINTS_MAX),
-            (Points::AsNeeded, None) => POINTS,
-            (Points::AsNeeded, Some([before, length])) => {
+            (Points::Each(0) | Points::By(_), _) => false,
+            (_, None) => true,
+            (_, Some([before, length])) => {
                 // Times the length of the step before: a division takes as long as the rest.
                 let size = (end - start).abs();
                 let bend = (last - seen.value) * length - (seen.value - before) * size;
                 let near = if first.abs() < last.abs() { first.abs() } else { last.abs() };
-                if near * length <= 2.0 * bend.abs() { POINTS } else { 0 }
+                near * length <= 2.0 * bend.abs()
             }
         }
     }
@@ -424,8 +445,8 @@ impl Search {
         Seen { value: self.last, before, anew: false, level: self.seen.level }
     }
 
-    /// Calls `found` with t and the direction of each zero. Returns what is known at the end of the step, and false if a
-    /// long step may have more zeros.
+    /// Calls `found` with t and the direction of each zero. Returns what is known at the end of the step, and false if it
+    /// may have more zeros.
     #[inline(never)]
     fn zeros(
         &self,
@@ -444,23 +465,33 @@ impl Search {
             left = (t, value);
         }
         let mut seen = self.seen_at_end();
-        if self.is_long {
-            let level = self.zeros_of_long([left, (end, last)], g, found)?;
-            seen.level = level.unwrap_or(roots::FINEST);
-            return Ok((seen, level.is_some()));
-        }
         let points = self.points(left.1);
         let (begin, whole) = (left.0, end - left.0);
         let places = (1..=points).map(|i| begin + whole * f64::from(i) / (f64::from(points) + 1.0));
-        self.zeros_among([left, (end, last)], places, g, found)?;
-        Ok((seen, true))
+        if !self.is_long && !self.may_have_two(left.1) {
+            self.zeros_among([left, (end, last)], places, g, found)?;
+            return Ok((seen, true));
+        }
+        let (mut before, mut coarsest, mut is_sure) = (self.seen.before, 0, true);
+        for t in places.chain([end]) {
+            let right = (t, if t == end { last } else { g(t)? });
+            if t != left.0 {
+                let level = self.zeros_by_polynomials([left, right], before.take(), g, found)?;
+                coarsest = coarsest.max(level.unwrap_or(roots::FINEST));
+                is_sure &= level.is_some();
+            }
+            left = right;
+        }
+        seen.level = coarsest;
+        Ok((seen, is_sure))
     }
 
-    /// Calls `found` with the zeros between two points of a long step. Returns the level that describes g there; none if
-    /// no polynomial does, so that there may be more zeros.
-    fn zeros_of_long(
+    /// Calls `found` with the zeros between two points. `before` is g at the start of the step before, and its size.
+    /// Returns the level that describes g there; none if no polynomial does, so that there may be more zeros.
+    fn zeros_by_polynomials(
         &self,
         [left, right]: [(f64, f64); 2],
+        before: Option<[f64; 2]>,
         g: &mut dyn FnMut(f64) -> Result<f64, RunError>,
         found: &mut dyn FnMut(f64, bool),
     ) -> Result<Option<usize>, RunError> {
@@ -469,7 +500,7 @@ impl Search {
         (values[0], values[roots::MOST - 1]) = (left.1, right.1);
         let middle = roots::MOST / 2;
         values[middle] = g(left.0 + 0.5 * length)?;
-        if let (0, Some([before, size])) = (self.seen.level, self.seen.before)
+        if let (0, Some([before, size])) = (self.seen.level, before)
             && roots::has_none([left.1, values[middle], right.1], (size / length.abs(), before))
         {
             return Ok(Some(0));
@@ -479,7 +510,8 @@ impl Search {
 
     /// Calls `found` with the zeros between two points, from the values of g there and in the middle. Polynomials of
     /// this level and finer describe g, else those of halves, which are halved so often at most. `noise` is the rounding of g
-    /// in the whole step, once that is known. Returns as [`zeros_of_long`](Self::zeros_of_long).
+    /// in the whole step, once that is known. Returns as
+    /// [`zeros_by_polynomials`](Self::zeros_by_polynomials).
     fn zeros_between(
         &self,
         ends: [(f64, f64); 2],

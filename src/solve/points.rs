@@ -61,6 +61,9 @@ pub(super) trait AnyPoints {
     fn rate(&mut self, t: f64) -> f64;
     /// How fast f(t, to) − f moves `to`, with the stored f.
     fn change_of_rate(&mut self, t: f64) -> f64;
+    /// A power of two above the rate at which f(t, y) turns y, or 0 if that is not finite. It is computed for steps of one
+    /// size, too.
+    fn turn_rate(&mut self, t: f64) -> f64;
     /// Corrects y to M, and records how far it was. Where f may be outside of 𝔤, refuses a state that was farther from M
     /// than rounding moves it.
     fn correct(&mut self, cadence: &mut Cadence, stats: &mut Stats) -> Result<(), Error>;
@@ -421,6 +424,15 @@ impl<P: Problem, M: Method<P>> AnyPoints for Points<'_, P, M> {
             problem.group().axpy(ScalarOf::<P>::lit(-1.0), f, v);
             (estimator.rate)(problem, v, to, tolerance.rule())
         })
+    }
+    fn turn_rate(&mut self, t: f64) -> f64 {
+        let Points { problem, y, v, field, .. } = self;
+        let problem = &**problem;
+        let (group, action) = (problem.group(), problem.action());
+        problem.f(ScalarOf::<P>::lit(t), y, v, field);
+        let relative = action.error_ratio(group, v, y, &mut Scales::relative());
+        let rate = smaller(group.norm(v), relative);
+        if rate.any_below(f64::INFINITY) { power_of_two_above(rate) } else { 0.0 }
     }
     fn correct(&mut self, cadence: &mut Cadence, stats: &mut Stats) -> Result<(), Error> {
         let Points { problem, y, orbit, restore, .. } = self;

@@ -16,7 +16,7 @@ use super::integrator::Integrator;
 use super::points::{AnyPoints, Saved};
 use super::roots::FINEST;
 use super::stats::Stats;
-use super::timeline::{Looked, Pacer, Timeline};
+use super::timeline::{Looked, Pacer, Timeline, Turns};
 use crate::error::Error;
 use crate::methods::{MapCounts, Method};
 use crate::problems::{PointOf, Problem};
@@ -188,6 +188,10 @@ impl Timeline {
                 option(each, &mut chooser.h, number);
                 option(each, &mut chooser.wall, number);
             }
+        }
+        if let Some(Turns { radian, next }) = &mut self.turns {
+            number(each, radian);
+            each(next);
         }
         points.each_number(Saved::Memory, &mut |x| number(each, x));
     }

@@ -125,7 +125,8 @@ impl<'a> Settings<'a> {
         events: Vec<EventRule>,
         keeps: Keeps,
     ) -> Drive<'a> {
-        times.expect_events(!events.is_empty());
+        let has_zeros = events.iter().any(EventRule::has_zeros);
+        times.expect_events(!events.is_empty(), has_zeros);
         let events = Events::new(events, times.facts.order);
         let Settings { save, times_by_steps, cancel, progress, checkpoints, resume, .. } = self;
         let mut stops = self.stops.into_iter();

@@ -18,7 +18,7 @@ pub struct Stats {
     /// Points computed within a step, for output and events.
     pub points_within: u64,
     /// Searches of one event in one step that may have missed zeros, because the function of the event is much faster than
-    /// the state, or hardly passes 0. Methods of order 10 and more know it. Shorter steps help
+    /// the state, or hardly passes 0. Long steps are searched, and those that may have two zeros. Shorter steps help
     /// ([`max_step`](crate::Solve::max_step)).
     pub unsure_steps: u64,
     /// Evaluations of f, also in rejected attempts and within steps; `None` if the method does not count them.

@@ -38,6 +38,19 @@ pub(super) struct Chooser {
     pub(super) has_events: bool,
 }
 
+/// How fast the state turns. Steps that turn it by more than a radian are searched for all zeros of events.
+pub(super) struct Turns {
+    /// The size of a step that turns the state by a radian.
+    pub(super) radian: f64,
+    /// The number of accepted steps at which it is computed again.
+    pub(super) next: u64,
+}
+
+impl Turns {
+    /// It is computed again after so many steps, and before each longer one.
+    const EVERY: u64 = 16;
+}
+
 /// What the workspace holds of the last step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Looked {
@@ -61,6 +74,8 @@ pub(super) struct Timeline {
     pub(super) last: Step<f64>,
     pub(super) looked_at: Looked,
     pub(super) pacer: Pacer,
+    /// How fast the state turns, if events have zeros to search for.
+    pub(super) turns: Option<Turns>,
     pub(super) cadence: Cadence,
     pub(super) stats: Stats,
     pub(super) facts: Facts,
@@ -102,14 +117,32 @@ impl Timeline {
             ..Stats::default()
         };
         let last = Step { n: 0, t: t0, h: 0.0 };
-        Timeline { t: t0, t1, last, looked_at: Looked::Nothing, pacer, cadence, stats, facts }
+        let (looked_at, turns) = (Looked::Nothing, None);
+        Timeline { t: t0, t1, last, looked_at, pacer, turns, cadence, stats, facts }
     }
 
-    /// Lets steps be short enough for a search for events.
-    pub(super) fn expect_events(&mut self, has_events: bool) {
+    /// Lets exact steps be short enough to show events, and tells long steps to the search for their zeros.
+    pub(super) fn expect_events(&mut self, has_events: bool, has_zeros: bool) {
+        self.turns = has_zeros.then_some(Turns { radian: f64::INFINITY, next: 0 });
         if let Pacer::ByError(chooser) = &mut self.pacer {
             chooser.has_events = has_events;
         }
+    }
+
+    /// Computes how fast the state turns, if that was long ago or a step of this size is a long one.
+    pub(super) fn see_turns(&mut self, points: &mut dyn AnyPoints, size: f64) {
+        let Some(turns) = &mut self.turns else { return };
+        let accepted = self.stats.accepted;
+        if accepted >= turns.next || size.abs() > turns.radian {
+            *turns =
+                Turns { radian: 1.0 / points.turn_rate(self.t), next: accepted + Turns::EVERY };
+            self.stats.evaluations = plus(self.stats.evaluations, Some(1));
+        }
+    }
+
+    /// True if a step of this size turns the state by more than a radian, as far as events ask.
+    pub(super) fn is_long(&self, size: f64) -> bool {
+        self.turns.as_ref().is_some_and(|turns| size.abs() > turns.radian)
     }
 
     /// The statistics of the run so far.
@@ -137,6 +170,7 @@ impl Timeline {
     pub(super) fn changed(&mut self, by: &str, done: Result<(), Error>) -> Result<(), RunError> {
         done.map_err(|source| RunError::Changed { by: by.into(), t: self.t, source })?;
         self.looked_at = Looked::Nothing;
+        self.turns.iter_mut().for_each(|turns| turns.next = 0);
         if let Pacer::ByError(chooser) = &mut self.pacer {
             chooser.h = None;
             chooser.wall = None;
@@ -202,6 +236,7 @@ impl Timeline {
             false => (Step { n, ..grid.step(*done) }, end),
         };
         *done += u64::from(!before);
+        self.see_turns(points, step.h);
         if let Err(source) = points.step(step) {
             self.looked_at = Looked::Nothing;
             return Err(Failure { step: n, t: self.t, h: step.h, source }.into());

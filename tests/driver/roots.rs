@@ -3,8 +3,9 @@
 use std::cell::Cell;
 
 use lieflow::Stats;
-use lieflow::groups::Sample;
-use lieflow::methods::{Embedded, LieSeries, Metric, Taylor};
+use lieflow::groups::{Sample, So3};
+use lieflow::methods::commutator_free::CF43;
+use lieflow::methods::{CommutatorFree, Embedded, LieSeries, Metric, Taylor};
 use lieflow::prelude::*;
 use lieflow::problems::{Exact, HeavyTop, PointOf, Problem, RigidBody, RigidBodyN};
 use nalgebra::{Matrix3, Vector3};
@@ -381,4 +382,59 @@ fn functions_that_are_not_smooth_are_sure() {
     let [level, both] = [zeros(|_, m| m.y - 0.5), zeros(|_, m| m.y.abs() - 0.5)];
     assert_eq!(both.len(), level.len() + zeros(|_, m| m.y + 0.5).len());
     assert_eq!(zeros(|t, _| (t - 5.0).powi(3)).len(), 1);
+}
+
+/// The zeros of the sine of the angle less 0.9, in a rotation about an axis with this angle.
+fn of_rotation<M>((method, [angle, rate]): (&M, [OfTime; 2]), steps: Option<f64>, what: &str)
+where
+    M: for<'a> Embedded<Turning<'a>>,
+{
+    let field: Field<'_> = &|t, _, v| *v = V::z() * rate(t);
+    let turning = Flow::new(So3::new(), LeftTranslation, field);
+    let solve = || {
+        let solve = Solve::new(&turning, method, [0.0, 20.0]);
+        match steps {
+            None => solve.tolerances(1e-8, 1e-8),
+            Some(h) => solve.dt(h),
+        }
+    };
+    let turns = (0..).map(|k| f64::from(k) * std::f64::consts::TAU);
+    let zeros: Vec<f64> = turns
+        .flat_map(|turn| [turn + 0.9f64.asin(), turn + std::f64::consts::PI - 0.9f64.asin()])
+        .take_while(|zero| *zero < angle(20.0))
+        .collect();
+    for points in [None, Some(2)] {
+        let event = Event::new("g", |_, y: &Matrix3<f64>| y[(1, 0)] - 0.9);
+        let event = match points {
+            None => event,
+            Some(points) => event.points(points),
+        };
+        let run = solve().event(event).run(Matrix3::identity()).unwrap();
+        let found: Vec<f64> = run.times_of(0).map(angle).collect();
+        assert_eq!(found.len(), zeros.len(), "{what}, {points:?}: {:?}", run.stats);
+        for (found, zero) in found.iter().zip(&zeros) {
+            assert!((found - zero).abs() < 1e-5, "{what}, {points:?}: {found}, expected {zero}");
+        }
+    }
+}
+
+type OfTime = fn(f64) -> f64;
+type Field<'a> = &'a dyn Fn(f64, &Matrix3<f64>, &mut V);
+type Turning<'a> = Flow<So3, LeftTranslation, Field<'a>>;
+
+/// An exponential is exact where f is constant, so that steps turn by many radian.
+#[test]
+fn steps_that_turn_far() {
+    let even: [OfTime; 2] = [|t| 100.0 * t, |_| 100.0];
+    // Slow at first, so that steps grow for long, and then fast.
+    let faster: [OfTime; 2] = [|t| 2.0 * ((0.25 * t).exp() - 1.0), |t| 0.5 * (0.25 * t).exp()];
+    for (what, [angle, rate]) in [("even", even), ("faster", faster)] {
+        let turn = std::f64::consts::TAU / rate(20.0);
+        for steps in [None, Some(0.7 * turn), Some(0.97 * turn), Some(1.37 * turn)] {
+            let what = |name| format!("{name}, {what}, {steps:?}");
+            of_rotation((&Rkmk::new(DOPRI5, Exp), [angle, rate]), steps, &what("dopri5"));
+            of_rotation((&Rkmk::new(DOP853, Exp), [angle, rate]), steps, &what("dop853"));
+            of_rotation((&CommutatorFree(CF43), [angle, rate]), steps, &what("cf43"));
+        }
+    }
 }

@@ -204,7 +204,7 @@ class Result:
         How often the state was corrected to M.
     unsure_steps : int
         The number of steps in which zeros of events may be missed, because the function of an event turns much faster than
-        the state. It is counted for methods of order 10 and more.
+        the state. Methods of order below 10 look into long steps only, and where there may be two zeros.
     """
 
     t: Array
