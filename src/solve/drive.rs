@@ -298,13 +298,18 @@ impl Drive<'_> {
         match output.observe(time) {
             Next::Continue => Ok(None),
             Next::Stop => {
-                self.look_at(output, time, self.times_by_steps)?; // whatever the observer wrote there
+                self.look_at(output, time, self.times_by_steps)?;
                 self.cut(output, time);
                 Ok(Some(Status::Observer))
             }
             Next::Changed => {
-                self.cut(output, time);
                 let changed = output.take_changed();
+                if changed.is_err() {
+                    // The run ends at the state that the observer was shown.
+                    self.look_at(output, time, self.times_by_steps)?;
+                    self.cut(output, time);
+                }
+                self.times.t = time;
                 self.times.changed("the observer", changed)?;
                 self.events.restart(time, output, 0..0)?;
                 output.cut_kept(time);

@@ -179,7 +179,11 @@ impl<P: Problem, M: Method<P>> AnyOutput for Output<'_, '_, P, M> {
         }
     }
     fn observe(&mut self, t: f64) -> Next {
-        (self.observe)(t, &mut self.shown)
+        let next = (self.observe)(t, &mut self.shown);
+        if next == Next::Stop {
+            self.shown = self.points.y.clone(); // whatever the observer wrote there
+        }
+        next
     }
     fn tell(&mut self, event: usize, t: f64, rising: bool) {
         match &mut self.events[event].told {
@@ -193,7 +197,11 @@ impl<P: Problem, M: Method<P>> AnyOutput for Output<'_, '_, P, M> {
     }
     fn take_changed(&mut self) -> Result<(), Error> {
         let Output { points, shown, .. } = self;
-        points.change_to(shown)
+        let changed = points.change_to(shown);
+        if changed.is_err() {
+            *shown = points.y.clone(); // also its shape
+        }
+        changed
     }
     fn change(&mut self, event: usize, t: f64) -> Result<(), Error> {
         match &mut self.events[event].change {

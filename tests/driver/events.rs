@@ -7,10 +7,10 @@ use std::time::Duration;
 use faer::Mat;
 use lieflow::actions::LeftTranslation;
 use lieflow::groups::{GroupMatrix, MatrixGroup, So3};
-use lieflow::maps::Exp;
-use lieflow::methods::tableau::{DOP853, DOPRI5, EULER};
+use lieflow::maps::{Cay, Exp};
+use lieflow::methods::tableau::{DOP853, DOPRI5, EULER, RK4};
 use lieflow::methods::{ExactMotion, Rk, Rkmk};
-use lieflow::problems::{Flow, RigidBodyAttitude};
+use lieflow::problems::{Flow, IsospectralFlow, RigidBodyAttitude, toda_lattice};
 use lieflow::solve::{Next, Status};
 use lieflow::{Error, Event, RunError, SaveAt, Solve};
 use nalgebra::Matrix3;
@@ -428,14 +428,36 @@ fn an_observer_changes_the_state() {
             .expect("a run");
         assert!((run.y - twice.y).norm() < 1e-7);
     }
-    let run =
-        Solve::new(&body, &method, [0.0, 2.0]).dt(0.1).times([0.77]).run_with(START, |_, m| {
+    // A bad state is not that of the run.
+    for t in [0.0, 0.77, 1.0] {
+        let shown = Cell::new(V::zeros());
+        let run = Solve::new(&body, &method, [0.0, 2.0]).dt(0.1).times([t]);
+        let run = run.run_with(START, |_, m| {
+            shown.set(*m);
             m.x = f64::NAN;
             Next::Changed
         });
-    let failed = run.expect_err("not on M");
+        let failed = run.expect_err("not on M");
+        assert!(failed.to_string().contains("the observer"), "{failed}");
+        let known = failed.solution.expect("what was known");
+        assert_eq!((known.t, known.y), (t, shown.get()));
+    }
+}
+
+#[test]
+fn an_observer_that_changes_the_shape_of_a_matrix_is_refused() {
+    let lattice = IsospectralFlow::toda(3).expect("a flow");
+    let start = toda_lattice(&[0.0, 0.1, 0.3], &[0.3, 0.1, -0.2]).expect("a lattice");
+    let method = Rkmk::new(RK4, Cay);
+    let run = Solve::new(&lattice, &method, [0.0, 1.0]).dt(0.1).times([0.25]);
+    let run = run.run_with(start, |_, l: &mut Mat<f64>| {
+        *l = Mat::zeros(2, 2);
+        Next::Changed
+    });
+    let failed = run.expect_err("another shape");
     assert!(failed.to_string().contains("the observer"), "{failed}");
-    assert_eq!(failed.solution.expect("what was known").t, 0.77);
+    let known = failed.solution.expect("what was known");
+    assert_eq!((known.t, known.y.nrows()), (0.25, 3));
 }
 
 /// A reflection has orthonormal columns, and is no rotation.
