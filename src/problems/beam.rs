@@ -79,7 +79,17 @@ impl Element {
         match *self {
             Element::Drift { length } => planes(length, 0.0, 0.0),
             Element::Quadrupole { length, k } => planes(length, k, -k),
-            Element::Dipole { length, radius } => planes(length, 1.0 / (radius * radius), 0.0),
+            Element::Dipole { length, radius } => {
+                let k = 1.0 / (radius * radius);
+                if !k.is_finite() {
+                    return Err(Error::out_of_range(
+                        "radius",
+                        radius,
+                        "a number with a finite 1/radius²",
+                    ));
+                }
+                planes(length, k, 0.0)
+            }
             Element::ThinLens { focal_length } => {
                 let kick = 1.0 / focal_length;
                 check_finite("1/focal_length", &[kick])?;

@@ -184,7 +184,7 @@ impl Invariants for IsospectralFlow {
 ///
 /// # Errors
 /// [`Error::Shape`] for lists of different lengths, [`Error::OutOfRange`] for numbers that are not
-/// finite.
+/// finite, and for neighbours whose force is not.
 pub fn toda_lattice(q: &[f64], p: &[f64]) -> Result<Mat<f64>, Error> {
     let n = q.len();
     if p.len() != n {
@@ -193,9 +193,21 @@ pub fn toda_lattice(q: &[f64], p: &[f64]) -> Result<Mat<f64>, Error> {
     }
     super::rigid_body::check_finite("q", q)?;
     super::rigid_body::check_finite("p", p)?;
+    let mut b = Vec::with_capacity(n.saturating_sub(1));
+    for (i, pair) in q.windows(2).enumerate() {
+        let gap = pair[0] - pair[1];
+        b.push(0.5 * (0.5 * gap).exp());
+        if !b[i].is_finite() {
+            return Err(Error::out_of_range(
+                "q₁ − q₂ of two neighbours",
+                gap,
+                "exp((q₁ − q₂)/2) finite",
+            ));
+        }
+    }
     Ok(Mat::from_fn(n, n, |i, j| match i.abs_diff(j) {
         0 => -0.5 * p[i],
-        1 => 0.5 * (0.5 * (q[i.min(j)] - q[i.max(j)])).exp(),
+        1 => b[i.min(j)],
         _ => 0.0,
     }))
 }

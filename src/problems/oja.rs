@@ -14,7 +14,7 @@ use crate::error::Error;
 use crate::groups::{AlgebraMatrix, MatrixGroup};
 use crate::problems::FieldStore;
 
-/// Oja's flow for a symmetric A.
+/// Oja's flow for a symmetric A. The number of columns is that of the start.
 ///
 /// ```
 /// use lieflow::faer::mat;
@@ -37,7 +37,7 @@ pub struct Oja {
 }
 
 impl Oja {
-    /// Makes the flow on n×k matrices.
+    /// Makes the flow with room for n×k matrices. A start with another number of columns has room made at its first f.
     ///
     /// # Errors
     /// [`Error::NotSquare`], [`Error::NotFiniteEntry`]; [`Error::OutOfRange`] for an A that is not
@@ -56,6 +56,19 @@ impl Oja {
             return Err(Error::out_of_range("k", k as f64, format!("1 ≤ k ≤ {}", a.nrows())));
         }
         Ok(Oja { group, a, k })
+    }
+
+    /// AX, XᵀAX and X XᵀAX for k columns.
+    fn room(&self, k: usize) -> [Mat<f64>; 3] {
+        let n = self.group.n();
+        [Mat::zeros(n, k), Mat::zeros(k, k), Mat::zeros(n, k)]
+    }
+
+    /// Makes room for k columns, if the start has another number of them.
+    fn fit(&self, k: usize, work: &mut [Mat<f64>; 3]) {
+        if work[0].ncols() != k {
+            *work = self.room(k);
+        }
     }
 
     /// tr XᵀAX. Allocates.
@@ -79,11 +92,12 @@ impl Problem for Oja {
         &Linear
     }
     fn work(&self) -> [Mat<f64>; 3] {
-        let (n, k) = (self.group.n(), self.k);
-        [Mat::zeros(n, k), Mat::zeros(k, k), Mat::zeros(n, k)]
+        self.room(self.k)
     }
     /// (AX)Xᵀ − ((AX)Xᵀ)ᵀ.
-    fn f(&self, _: f64, x: &Mat<f64>, v: &mut AlgebraMatrix, [ax, ..]: &mut [Mat<f64>; 3]) {
+    fn f(&self, _: f64, x: &Mat<f64>, v: &mut AlgebraMatrix, work: &mut [Mat<f64>; 3]) {
+        self.fit(x.ncols(), work);
+        let [ax, ..] = work;
         mul(ax, self.a.as_ref(), x.as_ref());
         mul(v, ax.as_ref(), x.transpose());
         antisymmetrise(v);
@@ -94,8 +108,10 @@ impl Problem for Oja {
         _: f64,
         x: &Mat<f64>,
         dx: &mut Mat<f64>,
-        FieldStore { work: [ax, inner, back], .. }: &mut FieldStore<Self>,
+        FieldStore { work, .. }: &mut FieldStore<Self>,
     ) {
+        self.fit(x.ncols(), work);
+        let [ax, inner, back] = work;
         mul(ax, self.a.as_ref(), x.as_ref());
         mul(inner, x.transpose(), ax.as_ref());
         mul(back, x.as_ref(), inner.as_ref());

@@ -132,4 +132,6 @@ fn the_toda_lattice() {
     assert!(end[(0, 0)] > end[(1, 1)] && end[(1, 1)] > end[(2, 2)]);
     assert!(end[(1, 0)].abs() < 1e-6 && end[(2, 1)].abs() < 1e-6, "the particles have parted");
     assert!(toda_lattice(&q, &p[..2]).is_err() && toda_lattice(&[f64::NAN], &[0.0]).is_err());
+    let apart = toda_lattice(&[3000.0, 0.0], &[0.0; 2]).unwrap_err().to_string();
+    assert!(apart.contains("two neighbours = 3000"), "{apart}");
 }

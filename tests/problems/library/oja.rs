@@ -45,6 +45,21 @@ fn it_stays_on_the_stiefel_manifold_and_finds_the_eigenvalues() {
     assert!(flow_a.trace(&start()) < flow_a.trace(&x));
 }
 
+/// The start says how many columns there are.
+#[test]
+fn a_start_of_other_columns() {
+    let [expected, x] = [2, 1].map(|k| flow(&Oja::new(a(), k).unwrap(), 1.0, 20, &start()));
+    assert_eq!(x, expected);
+    let rk = |k| {
+        let mut x = start();
+        let grid = TimeGrid::new([0.0, 1.0], 0.05).unwrap();
+        let flow = Oja::new(a(), k).unwrap();
+        integrate(&flow, &Rk(RK4), &grid, &SaveAt::Ends, &mut x, |_, _| {}).unwrap();
+        x
+    };
+    assert_eq!(rk(3), rk(2));
+}
+
 #[test]
 fn invalid_input_is_refused() {
     assert!(Oja::new(mat![[1.0, 2.0], [0.0, 1.0]], 1).is_err());

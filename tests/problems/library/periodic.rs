@@ -107,6 +107,8 @@ fn beam_lines() {
     assert!(Floquet::of(&unstable).unwrap().spectral_radius() > 1.5);
     assert!(Element::ThinLens { focal_length: 0.0 }.map().is_err());
     assert!(Element::Quadrupole { length: f64::NAN, k: 1.0 }.map().is_err());
+    let straight = Element::Dipole { length: 1.0, radius: 0.0 }.map().unwrap_err().to_string();
+    assert!(straight.contains("radius = 0"), "{straight}");
 }
 
 /// Ṗ = c − aᵀP − Pa − PbP on symmetric 2×2 matrices, with coefficients that depend on t.

@@ -1,7 +1,7 @@
 //! `kind = "toda"`, `"double-bracket"` and `"qr-flow"`: flows L̇ = \[B(L), L\] of symmetric matrices that
 //! keep the eigenvalues; see [`IsospectralFlow`].
 
-use lieflow::dense::{largest_entry, norm};
+use lieflow::dense::norm;
 use lieflow::problems::{IsospectralFlow, toda_lattice};
 
 use super::entries::{
@@ -78,12 +78,10 @@ fn read_toda(keys: TodaKeys) -> Result<Forms, ReadError> {
                 );
                 return Err(Refusal::at("momenta", message).into());
             }
-            let matrix = toda_lattice(&q, &p)?;
-            if !largest_entry(matrix.as_ref()).is_finite() {
+            toda_lattice(&q, &p).map_err(|_| {
                 let message = "two neighbours overlap so far that their force is not finite";
-                return Err(Refusal::at("positions", message).into());
-            }
-            matrix
+                Refusal::at("positions", message)
+            })?
         }
         Either::Second(_) if momenta.is_some() => {
             return Err(Refusal::at("momenta", "a matrix has no momenta; leave momenta out").into());
