@@ -195,6 +195,8 @@ pub enum FoundBy {
     TenfoldTolerance,
     /// A run in short steps, which ends elsewhere.
     ShortSteps,
+    /// A run in steps of a size that is no simple part of that of the run, which ends elsewhere.
+    OtherSteps,
 }
 
 /// The error of a part of the state: the largest of all rows that were compared, and that of the last row.
@@ -305,6 +307,7 @@ impl Accuracy {
             FoundBy::TenthTolerance => by("at a tenth of the tolerance"),
             FoundBy::TenfoldTolerance => by("at ten times the tolerance"),
             FoundBy::ShortSteps => by("in short steps"),
+            FoundBy::OtherSteps => by("in steps of another size"),
         };
         match self.rows < rows {
             true => format!("{found}, in {} of {rows} rows", self.rows),

@@ -27,7 +27,8 @@ impl Check<'_> {
     ) -> Option<String> {
         let worst = accuracy.worst()?;
         let Distance { relative, degrees, .. } = worst.largest;
-        if relative <= POOR || accuracy.found_by == FoundBy::ShortSteps {
+        let is_told = matches!(accuracy.found_by, FoundBy::ShortSteps | FoundBy::OtherSteps);
+        if relative <= POOR || is_told {
             return None;
         }
         let off = match degrees {

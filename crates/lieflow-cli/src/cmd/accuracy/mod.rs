@@ -12,7 +12,7 @@ use lieflow::catalog::MethodSpec;
 use lieflow::problems::explained_by_rounding;
 use lieflow::solve::{Next, Stats, Status};
 use lieflow_model::problem::{
-    Outcome, Plan, SHORT_STEPS, Watcher, stop_after_hardest, time_to_search,
+    Outcome, Plan, SHORT_STEPS, Watcher, stop_after_hardest, time_to_repeat, time_to_search,
 };
 use lieflow_model::scene::Scene;
 use lieflow_model::schema::{Component, Observable, Row};
@@ -32,8 +32,11 @@ const MISJUDGED: f64 = 3.0;
 /// The CPU time of a run below this many seconds says little of that of another. Then a run in short steps is begun in any
 /// case, and ends at its deadline.
 const BRIEF: f64 = 0.015;
-/// A run in short steps that ends this many estimated errors of the end away has found something that the run did not see.
+/// A third run that ends this many estimated errors away has found something that two runs did not see.
 const PASSED_OVER: f64 = 30.0;
+/// The size of the steps of a third run, in those of a run in steps of one size: the golden ratio. No period divides the
+/// steps of both.
+const OTHER_SIZE: f64 = 0.618_033_988_749_894_9;
 /// A motion that makes this of the last digits of its start is worth a warning.
 const AMPLIFIED: f64 = 1e-8;
 /// A tolerance this small is compared with a larger one: a smaller one is rounding.
@@ -242,17 +245,26 @@ impl<'a> Check<'a> {
         (self.scene().tolerances().is_some() && 2.0 * short < self.own.largest).then_some(short)
     }
 
-    /// The distance of the last row from that of a run in short steps, with a warning, where the steps of both runs have not
-    /// seen something, such as a short pulse, or a jump near the end of a step. Neither run evaluates f there, so the error of
-    /// a step shows nothing. Only the last row is compared: a pulse whose effect dies out before it is not seen.
+    /// The distance of the last row from that of a third run, with a warning, where the steps of two runs have not seen
+    /// something, such as a short pulse, a jump near the end of a step, or a torque whose period divides steps of one size.
+    /// Neither run evaluates f there, so the error of a step shows nothing. Only the last row is compared: a pulse whose
+    /// effect dies out before it is not seen.
     fn passed_over(&self, known: &Accuracy, seconds: f64) -> Option<(Accuracy, String)> {
-        let clock = Instant::now();
-        let (short, end) = (self.short_step()?, self.end());
-        let most = time_to_search(self.own.steps, if seconds < BRIEF { 0.0 } else { seconds })?;
+        let (clock, end) = (Instant::now(), self.end());
         if self.is_exact || self.ended_by_event {
             return None;
         }
-        let way = Way { largest: Some(short), ..OWN };
+        let seconds = if seconds < BRIEF { 0.0 } else { seconds };
+        let is_by_error = self.scene().tolerances().is_some();
+        let (way, found_by, estimated, most) = if is_by_error {
+            let way = Way { largest: Some(self.short_step()?), ..OWN };
+            let most = time_to_search(self.own.steps, seconds)?;
+            (way, FoundBy::ShortSteps, known.at_end(), most)
+        } else {
+            let way = Way { factor: OTHER_SIZE, ..OWN };
+            let most = time_to_repeat(1.0 / OTHER_SIZE, seconds)?;
+            (way, FoundBy::OtherSteps, known.relative(), most)
+        };
         // The estimate of its time may be wrong: within a pulse f may be dear, or steps small.
         self.deadline.set(Some(cpu_seconds() + most * MISJUDGED));
         let found = self.rows_at(way, &[end]);
@@ -260,17 +272,22 @@ impl<'a> Check<'a> {
         let (rows, taken) = found.ok()?;
         let pair = rows.first().map(|row| (end, [&self.last[..], &row[..]]));
         let apart = Apart::of_rows(self.watch, &self.run.sizes, pair.into_iter());
-        let found = self.judge(FoundBy::ShortSteps, &apart, 1.0, clock);
+        let found = self.judge(found_by, &apart, 1.0, clock);
         let rounding = explained_by_rounding(taken.steps, 1.0);
-        let is_far = found.relative() > PASSED_OVER * known.at_end().max(rounding);
+        let is_far = found.relative() > PASSED_OVER * estimated.max(rounding);
         is_far.then(|| {
             let name = found.worst().map_or("", |worst| &worst.name);
-            let short = number(short);
-            let warning = format!(
-                "in steps of at most {short} `{name}` ends elsewhere: the steps of this run, of up to {}, \
-                 pass over something short, such as a pulse or a jump. Give h_max = {short} in [time], or less",
-                number(self.own.largest)
-            );
+            let size = number(self.own.largest);
+            let warning = match way.largest.map(number) {
+                Some(short) => format!(
+                    "in steps of at most {short} `{name}` ends elsewhere: the steps of this run, of up to {size}, \
+                     pass over something short, such as a pulse or a jump. Give h_max = {short} in [time], or less"
+                ),
+                None => format!(
+                    "in steps of another size `{name}` ends elsewhere: steps of {size} are a multiple of the period of \
+                     something, such as a torque, or pass over something short. Take shorter steps"
+                ),
+            };
             (found, warning)
         })
     }
