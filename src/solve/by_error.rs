@@ -191,11 +191,14 @@ impl Timeline {
         (end, (end - self.t).abs())
     }
 
-    /// The largest size of a step that turns the state by so many radian at most, if events have zeros to search for.
+    /// The largest size of a step that turns the state by so many radian at most, if events have zeros to search for. It is
+    /// not below the least size.
     fn largest_size(&self, turn: f64) -> f64 {
         let by_turn = self.turns.as_ref().map_or(f64::INFINITY, |turns| turn * turns.radian);
         match &self.pacer {
-            Pacer::ByError(chooser) => chooser.control.max_step.min(by_turn),
+            Pacer::ByError(Chooser { control, .. }) => {
+                control.max_step.min(by_turn.max(control.min_step))
+            }
             Pacer::Equal { .. } => by_turn,
         }
     }

@@ -304,12 +304,14 @@ impl Drive<'_> {
             }
             Next::Changed => {
                 let changed = output.take_changed();
-                if changed.is_err() {
+                match changed {
+                    Ok(()) => self.times.t = time,
                     // The run ends at the state that the observer was shown.
-                    self.look_at(output, time, self.times_by_steps)?;
-                    self.cut(output, time);
+                    Err(_) => {
+                        self.look_at(output, time, self.times_by_steps)?;
+                        self.cut(output, time);
+                    }
                 }
-                self.times.t = time;
                 self.times.changed("the observer", changed)?;
                 self.events.restart(time, output, 0..0)?;
                 output.cut_kept(time);

@@ -8,6 +8,7 @@ use lieflow::methods::commutator_free::CF43;
 use lieflow::methods::{CommutatorFree, Embedded, LieSeries, Metric, Taylor};
 use lieflow::prelude::*;
 use lieflow::problems::{Exact, HeavyTop, PointOf, Problem, RigidBody, RigidBodyN};
+use lieflow::solve::StepControl;
 use nalgebra::{Matrix3, Vector3};
 use rand::{RngExt, SeedableRng};
 
@@ -416,6 +417,19 @@ where
             assert!((found - zero).abs() < 1e-5, "{what}, {points:?}: {found}, expected {zero}");
         }
     }
+}
+
+/// Steps are not below their least size because of events, and the search tells that they are too long.
+#[test]
+fn steps_that_turn_far_have_their_least_size() {
+    let turning =
+        Flow::of_time(So3::<f64>::new(), LeftTranslation, |_, v: &mut V| *v = 100.0 * V::z());
+    let control = StepControl::new(1e-8, 1e-8).unwrap().min_step(4.0).unwrap();
+    let method = Rkmk::new(DOPRI5, Exp);
+    let event = Event::new("g", |_, y: &Matrix3<f64>| y[(1, 0)] - 0.9);
+    let solve = Solve::new(&turning, &method, [0.0, 40.0]).control(control).event(event);
+    let stats = solve.run(Matrix3::identity()).unwrap().stats;
+    assert!(stats.smallest_step >= 4.0 && stats.unsure_steps > 0, "{stats:?}");
 }
 
 type OfTime = fn(f64) -> f64;

@@ -11,7 +11,8 @@ use lieflow_model::problem::EventPlan;
 use super::watch::Watch;
 use crate::output::{Kind, Records, ShownRows};
 
-/// The number of points in each step where a second run looks at an event, beside those that the library needs. A ninth of half a step is no multiple of most periods that the steps of the first run hide.
+/// The number of points in each step where a second run looks at an event, beside those that the library needs. A ninth of
+/// half a step is no multiple of most periods that the steps of the first run hide.
 const POINTS: u32 = 8;
 
 /// The rows, or the zeros, that are compared: each `every`-th, and the last.

@@ -82,3 +82,24 @@ fn times_of_poles_are_right() {
         assert!(event["count"].as_u64() >= Some(3) && error < 1e-6, "{event}");
     }
 }
+
+/// Half of a step that is a multiple of the period of a torque is one, too: neither run sees the torque.
+#[test]
+fn a_period_that_divides_the_steps_is_told() {
+    let folder = Folder::new();
+    for (dt, is_hidden) in [(0.05, true), (0.1, true), (0.001, false), (0.002, false)] {
+        let text = format!(
+            "[problem]\nkind = \"driven-body\"\ninertia = [1, 2, 3]\nmomentum_body = [0.1, 0.2, 0.3]\n\
+             torque = [\"0.1*sin(80*pi*t)^2\", 0, 0]\n[method]\nname = \"rkmk4\"\n\
+             [time]\nt_span = [0, 10]\ndt = {dt}\n"
+        );
+        folder.write("scene.toml", &text);
+        let told = folder.lieflow(&["run", "scene.toml", "--no-page", "--out", "out"]).ok();
+        let summary = folder.json("out/summary.json");
+        let digits = summary["accuracy"]["digits"].as_u64().unwrap();
+        let warning = "WARNING: in steps of another size `attitude` ends elsewhere: steps of ";
+        assert_eq!(told.contains(warning), is_hidden, "{dt}: {told}");
+        assert_eq!(digits <= 1, is_hidden, "{dt}: {told}");
+        assert_eq!(summary["accuracy"]["found_by"] == "other-steps", is_hidden);
+    }
+}
