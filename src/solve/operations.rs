@@ -1,9 +1,9 @@
 //! Counts the operations of a step, by taking the first steps of a run.
 
 use super::{Integrator, Solve, Stats, Steps, TimeGrid};
-use crate::methods::{Embedded, Step};
+use crate::methods::Embedded;
 use crate::problems::{PointOf, Problem, ScalarOf};
-use crate::scalar::{Counted, Real};
+use crate::scalar::Counted;
 
 /// The number of steps of a run that are counted, with rejected attempts. A longer run has their mean for each of its
 /// steps.
@@ -55,11 +55,10 @@ fn of_equal_steps<P: Problem, M: Embedded<P>>(
     grid: &TimeGrid,
 ) -> Option<f64> {
     let mut work = method.work(problem, &y).ok()?;
-    let lit = ScalarOf::<P>::lit;
     let (mut n, mut operations) = (0, 0);
     while n < grid.steps() && !enough(n, operations) {
-        let step = Step { n, t: lit(grid.time(n)), h: lit(grid.h()) };
-        let (done, counted) = Counted::count(|| method.step(problem, step, &mut y, &mut work));
+        let (done, counted) =
+            Counted::count(|| method.step(problem, grid.step(n), &mut y, &mut work));
         done.ok()?;
         (n, operations) = (n + 1, operations + counted.total());
     }

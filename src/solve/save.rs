@@ -198,7 +198,7 @@ impl Timeline {
 
     fn owner(&self, points: &dyn AnyPoints) -> String {
         let pace = match &self.pacer {
-            Pacer::Equal { .. } => "equal".into(),
+            Pacer::Equal { grid, .. } => if grid.is_split() { "split" } else { "equal" }.into(),
             Pacer::ByError(chooser) => format!("{:?}", chooser.control),
         };
         let costs = (self.facts.step.evaluations, self.facts.step.maps);

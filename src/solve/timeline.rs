@@ -222,7 +222,8 @@ impl Timeline {
         }
         if self.t != grid.time(*done) {
             // The run was taken off its grid: equal steps from here, of the same size.
-            *grid = TimeGrid::new([self.t, self.t1], grid.h().abs())?;
+            let anew = TimeGrid::new([self.t, self.t1], grid.h().abs())?;
+            *grid = if grid.is_split() { anew.split() } else { anew };
             *done = 0;
         }
         let end = grid.time(*done + 1);
@@ -299,7 +300,7 @@ impl Timeline {
     ) -> Result<bool, RunError> {
         let Pacer::Equal { grid, done, max_steps } = &mut self.pacer else { return Ok(false) };
         let (grid, first) = (*grid, *done);
-        if self.stats.accepted != first || self.t != grid.time(first) {
+        if grid.is_split() || self.stats.accepted != first || self.t != grid.time(first) {
             return Ok(false);
         }
         let mut end = end.min(self.cadence.next).min(grid.steps()).min(*max_steps);

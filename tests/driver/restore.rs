@@ -10,7 +10,7 @@ use lieflow::methods::tableau::{DOPRI5, RK4};
 use lieflow::methods::{AnyMethod, FluidMidpoint, Method, Rk, Rkmk};
 use lieflow::problems::{Flow, PointOf, Problem, Zeitlin};
 use lieflow::space::Numbers;
-use lieflow::{Event, Integrator, Solve};
+use lieflow::{Event, Integrator, Solve, TimeGrid};
 use nalgebra::Matrix3;
 use rand::SeedableRng;
 
@@ -70,6 +70,8 @@ fn steps_of_one_size() {
     goes_on(|| Solve::new(&body, &ccsk, [0.1, 2.0]).dt(0.11).integrator(START).unwrap());
     // The orbit that the state is taken back to, and when: a hundred steps, and steps off the grid.
     goes_on(|| Solve::new(&turn, &exp, [1.0, 0.0]).steps(120).integrator(V::x()).unwrap());
+    let split = || TimeGrid::new([0.1, 2.0], 0.11).unwrap().split();
+    goes_on(|| Solve::new(&body, &ccsk, [0.1, 2.0]).grid(split()).integrator(START).unwrap());
     let off_the_grid = || {
         let mut run = Solve::new(&body, &rk, [0.0, 3.0]).dt(0.25).integrator(START).unwrap();
         run.advance_to(0.3).unwrap();
@@ -237,6 +239,9 @@ fn bytes_that_are_not_of_this_run_are_refused() {
         Solve::new(&body, &method, [0.0, 10.0]).dt(0.1).integrator(START).unwrap().save(),
     ];
     others.iter_mut().for_each(|other| assert!(run.restore(other).is_err()));
+    let grid = TimeGrid::new([0.0, 10.0], 0.1).unwrap();
+    let split = Solve::new(&body, &method, [0.0, 10.0]).grid(grid.split()).integrator(START);
+    assert!(split.unwrap().restore(&others[1]).is_err());
     assert_eq!(bits(run.y()), before, "a refused state changes nothing");
     run.restore(&bytes).expect("its own state");
 }

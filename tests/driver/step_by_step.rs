@@ -7,11 +7,11 @@ use lieflow::actions::LeftTranslation;
 use lieflow::groups::So3;
 use lieflow::maps::Exp;
 use lieflow::methods::Rkmk;
-use lieflow::methods::tableau::{DOP853, DOPRI5, RK4};
+use lieflow::methods::tableau::{DOP853, DOPRI5, HEUN, RK4};
 use lieflow::nalgebra::{Matrix3, Vector3};
 use lieflow::problems::Flow;
 use lieflow::so3::exp;
-use lieflow::{RunError, Solve};
+use lieflow::{RunError, Solve, TimeGrid};
 
 /// ω about one axis with a pulse of 1000 for a thousandth of the time: its integral up to t.
 const PULSE: [f64; 2] = [2.0, 2.001];
@@ -147,5 +147,61 @@ fn a_run_goes_on_after_an_error_of_f() {
         run.advance_to(t).expect("steps");
         assert_eq!(run.y(), whole.y(), "t = {t}");
         assert_eq!(run.stats().accepted, whole.stats().accepted);
+    }
+}
+
+/// The times of split steps contain those of the steps, and each part is between a third and two thirds of a step.
+#[test]
+fn split_steps_are_parts_of_steps() {
+    let spans =
+        [([0.0, 3.0], 0.1), ([0.3, -2.0], 0.07), ([1e9, 1e9 + 1.0], 0.3), ([0.0, 0.1], 1.0)];
+    for (span, dt) in spans {
+        let whole = TimeGrid::new(span, dt).expect("a grid");
+        let parts = whole.split();
+        assert_eq!(
+            (parts.steps(), parts.t_span(), parts.h()),
+            (2 * whole.steps(), span, whole.h())
+        );
+        for n in 0..=whole.steps() {
+            assert_eq!(parts.time(2 * n), whole.time(n), "{span:?}");
+        }
+        for n in 0..whole.steps() {
+            let [start, middle, end] = [0, 1, 2].map(|part| parts.time(2 * n + part));
+            let share = (middle - start) / (end - start);
+            assert!((0.33..0.67).contains(&share) && share != 0.5, "{span:?}: {share}");
+        }
+    }
+    let endless = TimeGrid::new([0.0, f64::INFINITY], 0.5).expect("a grid").split();
+    assert_eq!((endless.time(12), endless.steps()), (3.0, u64::MAX));
+}
+
+/// The error over split steps is the share of that over whole steps that their doc states, also where a stop takes the run
+/// off its grid.
+#[test]
+fn split_steps_have_the_error_that_is_stated() {
+    let f = |t: f64, g: &Matrix3<f64>, v: &mut Vector3<f64>| {
+        *v = Vector3::new((2.0 * t).sin(), g.m11, 0.5);
+    };
+    let flow = Flow::new(So3::new(), LeftTranslation, f);
+    let (fine, heun, rk4) = (Rkmk::new(DOP853, Exp), Rkmk::new(HEUN, Exp), Rkmk::new(RK4, Exp));
+    let right = Solve::new(&flow, &fine, [0.0, 3.0]).dt(1e-3).run(Matrix3::identity());
+    let right = right.expect("a run").y;
+    for (p, steps) in [(2, 3000), (4, 120)] {
+        for stops in [&[][..], &[1.0012]] {
+            let error = |split: bool| {
+                let grid = TimeGrid::with_steps([0.0, 3.0], steps).expect("a grid");
+                let grid = if split { grid.split() } else { grid };
+                let (g, span, stops) = (Matrix3::identity(), [0.0, 3.0], stops.to_vec());
+                let run = match p {
+                    2 => Solve::new(&flow, &heun, span).grid(grid).stops(stops).run(g),
+                    _ => Solve::new(&flow, &rk4, span).grid(grid).stops(stops).run(g),
+                };
+                let run = run.expect("a run");
+                assert_eq!(run.stats.accepted >= 2 * steps, split);
+                (run.y - right).norm()
+            };
+            let share = error(true) / error(false) / TimeGrid::split_error(p);
+            assert!((share - 1.0).abs() < 0.05, "order {p}, {stops:?}: {share}");
+        }
     }
 }

@@ -71,6 +71,7 @@ pub(crate) struct Settings {
     pub(crate) max_steps: Option<u64>,
     dt: Option<f64>,
     steps: Option<u64>,
+    split: bool,
     pub(crate) stops: Vec<f64>,
     pub(crate) dense_output: bool,
     pub(crate) linear: bool,
@@ -106,11 +107,10 @@ impl Settings {
         orders: Orders,
         start: impl FnOnce() -> Vec<f64>,
     ) -> Result<Steps, lieflow::Error> {
-        if let Some(dt) = self.dt {
-            return Ok(Steps::Equal(TimeGrid::new(t_span, dt)?));
-        }
-        if let Some(steps) = self.steps {
-            return Ok(Steps::Equal(TimeGrid::with_steps(t_span, steps)?));
+        let dt = self.dt.map(|dt| TimeGrid::new(t_span, dt));
+        let grid = dt.or_else(|| self.steps.map(|steps| TimeGrid::with_steps(t_span, steps)));
+        if let Some(grid) = grid.transpose()? {
+            return Ok(Steps::Equal(if self.split { grid.split() } else { grid }));
         }
         let [rtol, atol] = match (self.rtol, self.atol) {
             (None, None) => default_tolerances(orders.step, &start()),

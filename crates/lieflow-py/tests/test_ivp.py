@@ -489,7 +489,7 @@ def test_the_estimate_finds_a_pulse_that_the_run_passed_over():
     slow = lf.solve_ivp(f, (0, 100), np.eye(3), group="SO(3)", frame="body", min_step=1.0, first_step=2.0)
     assert "steps" not in slow.estimate_error().found_by
     fixed = lf.solve_ivp(f, (0, 100), np.eye(3), group="SO(3)", frame="body", dt=1.0)
-    assert fixed.estimate_error().found_by == "a second run in steps of half the size"
+    assert fixed.estimate_error().found_by == "a second run with each step in two parts"
 
 
 @pytest.mark.parametrize("method", ["magnus4", "magnus6", "magnus8", "cfm4-2", "cfm6-5", "cayley-magnus4"])
@@ -558,6 +558,32 @@ def test_the_second_run_has_shorter_steps_where_few_are_not_shortened():
         assert 1e-3 < true < 1.5 * stated < 3 * true
 
 
+@pytest.mark.parametrize("method", ["rkmk4 exp", "rkmk-gauss4"])
+def test_the_second_run_sees_a_period_that_divides_the_steps(method):
+    keys = {"method": method, "dt": 0.1, **ON_SO3}
+    for periods in range(1, 21):
+        r = lf.solve_ivp(lambda t, R: [0.05 * np.cos(20 * np.pi * periods * t), 0.0, 0.0], (0, 10), np.eye(3), **keys)
+        true = np.abs(lf.so3.log(r.y_end)).max()
+        stated = r.estimate_error().y
+        # Gauss nodes within a step have phases of their own.
+        assert stated > 0.2 * true or true < 1e-3
+        assert method != "rkmk4 exp" or true > 0.1
+
+
+@pytest.mark.parametrize("steps", [{"dt": 0.1}, {"steps": 50}])
+def test_the_second_run_has_jumps_between_its_steps_where_the_first_has(steps):
+    """A controller holds its torque over each step."""
+
+    def held(t, R):
+        return [1.0 if np.floor(10 * t + 1e-9) % 2 else -0.5, 0.3 * np.sin(t), 0.2]
+
+    keys = {"method": "rkmk-gauss4", **ON_SO3}
+    r = lf.solve_ivp(held, (0, 5), np.eye(3), t_eval=[2.0, 5.0], **steps, **keys)
+    exact = lf.solve_ivp(held, (0, 5), np.eye(3), t_eval=[2.0, 5.0], stops=np.arange(1, 50) / 10, **keys, dt=0.01)
+    true, stated = np.abs(lf.so3.log(np.swapaxes(exact.y, -1, -2) @ r.y)).max(), r.estimate_error().y
+    assert true < 1.5 * stated < 5 * true + 1e-9
+
+
 def test_the_second_run_has_other_steps_where_rounding_chooses_them():
     r = lf.solve_ivp(_turning, (0, 2), np.eye(3), method="rkmk heun exp", rtol=1e-12, atol=0.0, **ON_SO3)
     stated, true = r.estimate_error(), _true_error(r)
@@ -580,7 +606,7 @@ def test_a_second_run_may_take_more_attempts_or_says_why_not():
 
     r = lf.solve_ivp(fails, (0, 2), np.eye(3), method="rkmk4 exp", steps=400, **ON_SO3)
     assert r.success
-    with pytest.raises(lf.RunError, match="no estimate: a second run in steps of half the size ended at t ="):
+    with pytest.raises(lf.RunError, match="no estimate: a second run with each step in two parts ended at t ="):
         r.estimate_error()
 
 

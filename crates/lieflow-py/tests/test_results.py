@@ -18,8 +18,8 @@ def test_the_error_of_a_matrix_that_is_no_rotation_is_a_length():
     r = lf.solve_ivp(ode, (0, 2), method="rkmk midpoint exp", steps=40, t_eval=[2.0])
     [name] = r.y
     true = np.linalg.norm(r.y[name][0] - lf.solve_ivp(ode, (0, 2), t_eval=[2.0]).y[name][0])
-    # Half the step size leaves a quarter of the error.
-    assert r.estimate_error().y[name] == pytest.approx(0.75 * true, rel=0.02) and true > 1e-4
+    # Each step in two parts leaves 0.294 of the error.
+    assert r.estimate_error().y[name] == pytest.approx(0.706 * true, rel=0.02) and true > 1e-4
 
 
 def test_the_error_of_rotations_is_an_angle():
@@ -31,9 +31,9 @@ def test_the_error_of_rotations_is_an_angle():
 def test_the_error_of_a_large_matrix_does_not_saturate():
     r = lf.solve_ivp(lambda t, y: np.diag([1.0, 2.0, 3.0]), (0, 1), np.eye(3), group="GL(3)", frame="space",
                      method="rk midpoint", steps=1, t_eval=[1.0])
-    other = lf.solve_ivp(lambda t, y: np.diag([1.0, 2.0, 3.0]), (0, 1), np.eye(3), group="GL(3)", frame="space",
-                         method="rk midpoint", steps=2, t_eval=[1.0])
-    assert r.estimate_error().y == pytest.approx(np.linalg.norm(r.y - other.y)) and r.estimate_error().y > 4
+    # The first step of a run is split at this place.
+    other = np.prod([1 + h + h**2 / 2 for h in np.outer([0.33643258, 1 - 0.33643258], [1.0, 2.0, 3.0])], axis=0)
+    assert r.estimate_error().y == pytest.approx(np.linalg.norm(r.y[0] - np.diag(other))) and r.estimate_error().y > 4
 
 
 @pytest.mark.parametrize("times", [None, [50.0], np.linspace(45, 50, 7)])

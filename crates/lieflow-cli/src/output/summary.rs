@@ -187,6 +187,8 @@ pub struct Accuracy {
 pub enum FoundBy {
     /// The exact motion.
     Exact,
+    /// A second run with each step in two parts.
+    SplitSteps,
     /// A second run in steps of half the size.
     HalfStep,
     /// A second run at a tenth of the tolerance.
@@ -195,8 +197,6 @@ pub enum FoundBy {
     TenfoldTolerance,
     /// A run in short steps, which ends elsewhere.
     ShortSteps,
-    /// A run in steps of a size that is no simple part of that of the run, which ends elsewhere.
-    OtherSteps,
 }
 
 /// The error of a part of the state: the largest of all rows that were compared, and that of the last row.
@@ -303,11 +303,11 @@ impl Accuracy {
             |what: &str| format!("estimated by a second run {what}, {}", duration(self.seconds));
         let found = match self.found_by {
             FoundBy::Exact => "against the exact motion".into(),
+            FoundBy::SplitSteps => by("with each step in two parts"),
             FoundBy::HalfStep => by("with half the step"),
             FoundBy::TenthTolerance => by("at a tenth of the tolerance"),
             FoundBy::TenfoldTolerance => by("at ten times the tolerance"),
             FoundBy::ShortSteps => by("in short steps"),
-            FoundBy::OtherSteps => by("in steps of another size"),
         };
         match self.rows < rows {
             true => format!("{found}, in {} of {rows} rows", self.rows),

@@ -181,7 +181,7 @@ fn an_estimated_error_is_that_against_the_exact_motion() {
             "" => "tenfold-tolerance",
             smallest if smallest.starts_with("rtol = 5e-14") => "half-step",
             tolerance if tolerance.starts_with("rtol") => "tenth-tolerance",
-            _ => "half-step",
+            _ => "split-steps",
         };
         assert_eq!(estimated_by, expected, "{method} {time}");
         let rounding = 1e-12;
@@ -313,7 +313,7 @@ fn the_error_check_can_be_switched_off() {
         (told, folder.json("out/summary.json"))
     };
     let (told, summary) = run(&["damped-satellite"]);
-    assert!(told.contains("estimated by a second run with half the step"), "{told}");
+    assert!(told.contains("estimated by a second run with each step in two parts"), "{told}");
     assert_eq!(summary["accuracy"]["digits"], 8);
     assert_eq!(summary["error_at_end"], Value::Null);
     for off in [["--error-check", "never"], ["--set", "output.error_check=false"]] {

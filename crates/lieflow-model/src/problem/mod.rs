@@ -19,7 +19,7 @@ pub use kind::*;
 pub use model::{Model, Problem};
 pub use operations::CountOnVectors;
 pub(crate) use operations::{Counting, counting};
-pub use pulses::{SHORT_STEPS, stop_after_hardest, time_to_repeat, time_to_search};
+pub use pulses::{SHORT_STEPS, stop_after_hardest, time_to_search};
 pub(crate) use quantity::*;
 pub use run::*;
 pub(crate) use stepper::{Points, stepper_by};

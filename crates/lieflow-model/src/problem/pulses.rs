@@ -23,12 +23,7 @@ const START: f64 = 0.002;
 /// The time in seconds that a search in short steps may take, after a run of `steps` steps in `seconds` seconds. `None` if
 /// the search would take longer.
 pub fn time_to_search(steps: u64, seconds: f64) -> Option<f64> {
-    time_to_repeat((SHORT_STEPS + steps) as f64 / steps.max(1) as f64, seconds)
-}
-
-/// The time in seconds that a search of this many times the steps of a run may take, after the run took `seconds` seconds.
-/// `None` if the search would take longer.
-pub fn time_to_repeat(times: f64, seconds: f64) -> Option<f64> {
+    let times = (SHORT_STEPS + steps) as f64 / steps.max(1) as f64;
     let takes = (seconds - START).max(0.0) * times;
     let most = SEARCH.max(seconds);
     (takes <= most).then_some(most)

@@ -178,6 +178,7 @@ def settings_of(
         "max_steps": _count("max_steps", max_steps),
         "dt": _positive("dt", dt),
         "steps": _count("steps", steps),
+        "split": False,
         "stops": [] if stops is None or isinstance(stops, tuple) and not stops else np.atleast_1d(real("stops", stops)).tolist(),
         "dense_output": _flag("dense_output", dense_output),
         "linear": _flag("linear", linear),
@@ -515,11 +516,11 @@ def _second(
     if settings["max_steps"] is not None:
         finer["max_steps"] = 10 * settings["max_steps"]
     limits = dict.fromkeys(("rtol", "atol", "first_step", "min_step", "max_step", "steps"))
-    found_by, mean = "a second run in steps of half the size", abs(first.t_end - t0) / first.nsteps
+    found_by, mean = "a second run with each step in two parts", abs(first.t_end - t0) / first.nsteps
     if first._tolerances is None:
-        # Where knots have made the steps shorter than they were to be, it is their mean that is halved.
+        # Where knots have made the steps shorter than they were to be, it is their mean that is split.
         h = min(settings["dt"] or first.largest_step, first.largest_step)
-        other = run({**finer, **limits, "dt": (mean if mean < 0.95 * h else h) / 2})
+        other = run({**finer, **limits, "dt": mean if mean < 0.95 * h else h, "split": True})
     else:
         by_tolerance, finer = _finer(finer, first, t0, seconds)
         other, is_limited = run(finer), settings["min_step"] is not None

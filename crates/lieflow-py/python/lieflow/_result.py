@@ -316,8 +316,10 @@ class Result:
     def estimate_error(self) -> ErrorEstimate:
         """Return how far the outputs and the events are from the exact motion, or from a second run.
 
-        The second run has half the step size, or a tenth of the tolerances; where these are the least that rounding allows,
-        ten times the tolerances. Then the estimate is mostly too large. No second run shows what rounding does to both.
+        Where steps have one size, the second run has each step in two parts, from a third to two thirds of it: a torque whose
+        period divides the steps has other phases there. Else it has a tenth of the tolerances; where these are the least that
+        rounding allows, ten times the tolerances. Then the estimate is mostly too large. No second run shows what rounding
+        does to both.
         Where the steps are the same again, because tolerances below rounding choose them, it takes steps of a quarter of
         their mean size. Where it is quick (0.3 s, or the time of the run), a run by tolerances takes at least 2000 steps, so
         that it finds a short pulse of f that the first one passed over.

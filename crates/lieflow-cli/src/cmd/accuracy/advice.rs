@@ -27,7 +27,7 @@ impl Check<'_> {
     ) -> Option<String> {
         let worst = accuracy.worst()?;
         let Distance { relative, degrees, .. } = worst.largest;
-        let is_told = matches!(accuracy.found_by, FoundBy::ShortSteps | FoundBy::OtherSteps);
+        let is_told = accuracy.found_by == FoundBy::ShortSteps;
         if relative <= POOR || is_told {
             return None;
         }

@@ -7,12 +7,12 @@ use std::f64::consts::PI;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
-use lieflow::SaveAt;
 use lieflow::catalog::MethodSpec;
 use lieflow::problems::explained_by_rounding;
 use lieflow::solve::{Next, Stats, Status};
+use lieflow::{SaveAt, TimeGrid};
 use lieflow_model::problem::{
-    Outcome, Plan, SHORT_STEPS, Watcher, stop_after_hardest, time_to_repeat, time_to_search,
+    Outcome, Plan, SHORT_STEPS, Steps, Watcher, stop_after_hardest, time_to_search,
 };
 use lieflow_model::scene::Scene;
 use lieflow_model::schema::{Component, Observable, Row};
@@ -34,9 +34,6 @@ const MISJUDGED: f64 = 3.0;
 const BRIEF: f64 = 0.015;
 /// A third run that ends this many estimated errors away has found something that two runs did not see.
 const PASSED_OVER: f64 = 30.0;
-/// The size of the steps of a third run, in those of a run in steps of one size: the golden ratio. No period divides the
-/// steps of both.
-const OTHER_SIZE: f64 = 0.618_033_988_749_894_9;
 /// A motion that makes this of the last digits of its start is worth a warning.
 const AMPLIFIED: f64 = 1e-8;
 /// A tolerance this small is compared with a larger one: a smaller one is rounding.
@@ -93,9 +90,11 @@ struct Way {
     factor: f64,
     /// The limit of steps that are chosen by their error.
     largest: Option<f64>,
+    /// Are steps of one size split?
+    split: bool,
 }
 
-const OWN: Way = Way { default: false, factor: 1.0, largest: None };
+const OWN: Way = Way { default: false, factor: 1.0, largest: None, split: false };
 
 /// The steps that a run took.
 #[derive(Clone, Copy, Default)]
@@ -245,49 +244,34 @@ impl<'a> Check<'a> {
         (self.scene().tolerances().is_some() && 2.0 * short < self.own.largest).then_some(short)
     }
 
-    /// The distance of the last row from that of a third run, with a warning, where the steps of two runs have not seen
-    /// something, such as a short pulse, a jump near the end of a step, or a torque whose period divides steps of one size.
-    /// Neither run evaluates f there, so the error of a step shows nothing. Only the last row is compared: a pulse whose
-    /// effect dies out before it is not seen.
+    /// The distance of the last row from that of a run in short steps, with a warning, where the steps of two runs that are
+    /// chosen by their error have passed over something, such as a short pulse or a jump near the end of a step. Neither run
+    /// evaluates f there, so the error of a step shows nothing. Only the last row is compared: a pulse whose effect dies out
+    /// before it is not seen.
     fn passed_over(&self, known: &Accuracy, seconds: f64) -> Option<(Accuracy, String)> {
         let (clock, end) = (Instant::now(), self.end());
         if self.is_exact || self.ended_by_event {
             return None;
         }
-        let seconds = if seconds < BRIEF { 0.0 } else { seconds };
-        let is_by_error = self.scene().tolerances().is_some();
-        let (way, found_by, estimated, most) = if is_by_error {
-            let way = Way { largest: Some(self.short_step()?), ..OWN };
-            let most = time_to_search(self.own.steps, seconds)?;
-            (way, FoundBy::ShortSteps, known.at_end(), most)
-        } else {
-            let way = Way { factor: OTHER_SIZE, ..OWN };
-            let most = time_to_repeat(1.0 / OTHER_SIZE, seconds)?;
-            (way, FoundBy::OtherSteps, known.relative(), most)
-        };
+        let short = self.short_step()?;
+        let most = time_to_search(self.own.steps, if seconds < BRIEF { 0.0 } else { seconds })?;
         // The estimate of its time may be wrong: within a pulse f may be dear, or steps small.
         self.deadline.set(Some(cpu_seconds() + most * MISJUDGED));
-        let found = self.rows_at(way, &[end]);
+        let found = self.rows_at(Way { largest: Some(short), ..OWN }, &[end]);
         self.deadline.set(None);
         let (rows, taken) = found.ok()?;
         let pair = rows.first().map(|row| (end, [&self.last[..], &row[..]]));
         let apart = Apart::of_rows(self.watch, &self.run.sizes, pair.into_iter());
-        let found = self.judge(found_by, &apart, 1.0, clock);
+        let found = self.judge(FoundBy::ShortSteps, &apart, 1.0, clock);
         let rounding = explained_by_rounding(taken.steps, 1.0);
-        let is_far = found.relative() > PASSED_OVER * estimated.max(rounding);
+        let is_far = found.relative() > PASSED_OVER * known.at_end().max(rounding);
         is_far.then(|| {
             let name = found.worst().map_or("", |worst| &worst.name);
-            let size = number(self.own.largest);
-            let warning = match way.largest.map(number) {
-                Some(short) => format!(
-                    "in steps of at most {short} `{name}` ends elsewhere: the steps of this run, of up to {size}, \
-                     pass over something short, such as a pulse or a jump. Give h_max = {short} in [time], or less"
-                ),
-                None => format!(
-                    "in steps of another size `{name}` ends elsewhere: steps of {size} are a multiple of the period of \
-                     something, such as a torque, or pass over something short. Take shorter steps"
-                ),
-            };
+            let [short, size] = [short, self.own.largest].map(number);
+            let warning = format!(
+                "in steps of at most {short} `{name}` ends elsewhere: the steps of this run, of up to {size}, pass over \
+                 something short, such as a pulse or a jump. Give h_max = {short} in [time], or less"
+            );
             (found, warning)
         })
     }
@@ -334,7 +318,7 @@ impl<'a> Check<'a> {
     /// The plan of a run to time t. A step ends where the motion was the hardest for the run: so it sees a short pulse that
     /// the run has seen.
     fn plan(&self, way: Way, t: f64) -> Result<Plan<'static>, String> {
-        let Way { default, factor, largest } = way;
+        let Way { default, factor, largest, split } = way;
         let plan = match default {
             true => {
                 let order = self.watch.model.order(&self.method(way));
@@ -344,6 +328,9 @@ impl<'a> Check<'a> {
         };
         let mut plan = plan.map_err(|error| error.to_string())?;
         plan.stops.extend(self.own.hardest);
+        if let (true, Steps::Equal(grid)) = (split, &mut plan.steps) {
+            *grid = grid.split();
+        }
         Ok(plan)
     }
 
@@ -416,25 +403,25 @@ impl<'a> Check<'a> {
         run: impl Fn(Way) -> Result<(T, u64), String>,
     ) -> Result<(FoundBy, f64, T), String> {
         let order = self.watch.model.order(&self.method(way)).ok().flatten();
-        let order = order.ok_or("the method has no order")? as f64;
+        let order = order.ok_or("the method has no order")?;
         // The error of steps of one size goes with the power p of the size, that of a tolerance with p/(p + 1) of it.
         // The default is beyond the smallest.
         let tolerances = if way.default { Some([0.0; 2]) } else { self.scene().tolerances() };
         let tolerance = tolerances.map(|both| way.factor * both[0].max(both[1]));
-        let halved = 1.0 / (1.0 - 0.5_f64.powf(order));
+        let halved = 1.0 / (1.0 - 0.5_f64.powi(order as i32));
         // A step that is a tenth of the tolerance long, in terms of one by the tolerance; the error goes with its power p.
-        let shorter = 0.1_f64.powf(1.0 / (order + 1.0));
-        let ratio = shorter.powf(order);
+        let shorter = 0.1_f64.powf(1.0 / (order as f64 + 1.0));
+        let ratio = shorter.powi(order as i32);
         let (found_by, factor, largest, share) = match tolerance {
             None => {
-                // Where knots or the end have made the steps shorter than they were to be, it is their mean that is halved.
+                // Where knots or the end have made the steps shorter than they were to be, it is their mean that is split.
                 let [t0, t1] = self.run.t_span;
                 let planned = (t1 - t0).abs() / (way.factor * self.scene().grid.h().abs());
                 let factor = match taken.steps as f64 > (planned - 1e-9).ceil() || planned < 1.0 {
-                    true => 0.5 * planned / taken.steps as f64,
-                    false => 0.5,
+                    true => planned / taken.steps as f64,
+                    false => 1.0,
                 };
-                (FoundBy::HalfStep, factor, None, halved)
+                (FoundBy::SplitSteps, factor, None, 1.0 / (1.0 - TimeGrid::split_error(order)))
             }
             // The limit shortens the steps also where `h_max` or knots chose them.
             Some(tolerance) if tolerance >= SMALLEST => {
@@ -443,7 +430,8 @@ impl<'a> Check<'a> {
             }
             Some(_) => (FoundBy::TenfoldTolerance, 10.0, way.largest, ratio / (1.0 - ratio)),
         };
-        let (other, steps) = run(Way { factor: factor * way.factor, largest, ..way })?;
+        let split = tolerance.is_none();
+        let (other, steps) = run(Way { factor: factor * way.factor, largest, split, ..way })?;
         let is_limited = steps as f64 > CHOSEN * taken.steps as f64;
         if found_by == FoundBy::TenfoldTolerance && is_limited {
             let (other, _) = run(Way { largest: Some(0.5 * taken.largest), ..way })?;
