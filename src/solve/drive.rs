@@ -270,8 +270,7 @@ impl Drive<'_> {
                     }
                 }
                 (_, Some(zero)) => {
-                    self.zeros_done += 1;
-                    if let Some(status) = self.occur(output, zero)? {
+                    if let Some(status) = self.occur(output, zero.t)? {
                         return Ok(Some(status));
                     }
                 }
@@ -313,7 +312,8 @@ impl Drive<'_> {
                     }
                 }
                 self.times.changed("the observer", changed)?;
-                self.events.restart(time, output, 0..0)?;
+                let at = self.zeros_done..self.zeros_done + self.zeros_at(time);
+                self.events.restart(time, output, at)?;
                 output.cut_kept(time);
                 Ok(None)
             }
@@ -347,14 +347,23 @@ impl Drive<'_> {
         self.show(output, self.times.t)
     }
 
+    /// The number of zeros at t, up to rounding, that come next. They belong together.
+    fn zeros_at(&self, t: f64) -> usize {
+        // Zeros are found in terms of the step.
+        let Step { t: start, h, .. } = self.times.last;
+        let rounding = 4.0 * f64::EPSILON * start.abs().max((start + h).abs());
+        let found = self.events.found.get(self.zeros_done..).unwrap_or_default();
+        found.iter().take_while(|zero| (zero.t - t).abs() <= rounding).count()
+    }
+
     /// Handles a zero of an event, and all others at the same time.
-    fn occur(&mut self, output: &mut dyn AnyOutput, Zero { t, event, rising }: Zero) -> Ended {
-        let mut next = Some((event, rising));
+    fn occur(&mut self, output: &mut dyn AnyOutput, t: f64) -> Ended {
         let mut stopped = None;
         let mut acts = false;
-        let at = self.zeros_done - 1;
-        while let Some((event, rising)) = next {
+        let at = self.zeros_done..self.zeros_done + self.zeros_at(t);
+        for zero in at.clone() {
             self.look_at(output, t, false)?;
+            let Zero { event, rising, .. } = self.events.found[zero];
             output.tell(event, t, rising);
             let this = &mut self.events.all[event];
             this.count += 1;
@@ -362,12 +371,8 @@ impl Drive<'_> {
             if this.stops() && stopped.is_none() {
                 stopped = Some(this.name.clone());
             }
-            // Zeros at one time, up to rounding, belong together.
-            let near = |u: f64| (u - t).abs() <= 4.0 * f64::EPSILON * t.abs();
-            let following = self.events.found.get(self.zeros_done).filter(|zero| near(zero.t));
-            next = following.map(|zero| (zero.event, zero.rising));
-            self.zeros_done += usize::from(next.is_some());
         }
+        self.zeros_done = at.end;
         if !acts {
             return Ok(None);
         }
@@ -377,7 +382,7 @@ impl Drive<'_> {
             output.see_end(self.times.t);
         }
         self.cut(output, t);
-        for zero in &self.events.found[at..self.zeros_done] {
+        for zero in &self.events.found[at.clone()] {
             let event = &self.events.all[zero.event];
             if event.changes {
                 let changed = output.change(zero.event, t);
@@ -391,7 +396,7 @@ impl Drive<'_> {
             }
             return Ok(Some(Status::Event(name)));
         }
-        self.events.restart(t, output, at..self.zeros_done)?;
+        self.events.restart(t, output, at)?;
         Ok(None)
     }
 }

@@ -331,7 +331,8 @@ impl Events {
         Ok(())
     }
 
-    /// Called after the state was changed at t, at the zeros `at` of the last step. Drops the other zeros of the step.
+    /// Called after the state was changed at t. `at` are the zeros of the last step at that time. Drops the zeros after
+    /// them.
     pub(super) fn restart(
         &mut self,
         t: f64,
@@ -347,7 +348,8 @@ impl Events {
                 || self.found[at.clone()].iter().any(|zero| zero.event == index);
             event.seen = Seen::only(value, anew);
         }
-        self.found.clear();
+        self.found.truncate(at.end);
+        self.found[at].iter_mut().for_each(|zero| zero.t = t);
         Ok(())
     }
 

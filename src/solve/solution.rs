@@ -38,7 +38,8 @@ pub enum Next {
     Continue,
     /// Stop here.
     Stop,
-    /// The observer changed the state, and the run continues from it. It must be on M.
+    /// The observer changed the state, and the run continues from it. It must be on M. Zeros of events at this time are told
+    /// with the new state.
     Changed,
 }
 

@@ -444,6 +444,39 @@ fn an_observer_changes_the_state() {
     }
 }
 
+/// Zeros at the time of a change are told, whoever changes the state: the observer, or another event.
+#[test]
+fn a_change_hides_no_zero_at_the_same_time() {
+    let (body, method) = (body(), Rkmk::new(DOPRI5, Exp));
+    for (span, at) in [([0.0, 2.0], 1.0), ([-1.0, 1.0], 0.0), ([3.0, -2.0], 0.1)] {
+        for stops in [false, true] {
+            let event = Event::new("clock", move |t: f64, _: &V| (t - at).sin());
+            let event = if stops { event.stop_after(1) } else { event };
+            let run = Solve::new(&body, &method, span).tolerances(1e-9, 1e-9).times([at]);
+            let run = run.event(event).run_with(START, |_, m| {
+                *m *= 2.0;
+                Next::Changed
+            });
+            let run = run.expect("a run");
+            assert_eq!(run.events.len(), 1, "{span:?}");
+            assert_eq!((run.t == span[1], run.events[0].y == run.y), (!stops, stops));
+            assert!(
+                (run.events[0].t - at).abs() < 1e-15
+                    && (run.y.norm() / START.norm() - 2.0).abs() < 1e-9
+            );
+        }
+        let count = |name, g: fn(f64) -> f64| Event::new(name, move |t: f64, _: &V| g(t - at));
+        let run = Solve::new(&body, &method, span)
+            .tolerances(1e-9, 1e-9)
+            .event(count("sine", f64::sin).change(|_, m: &mut V| *m *= 2.0))
+            .event(count("exponential", f64::exp_m1))
+            .event(count("tangent", |t| 3.0 * (t / 3.0).tan()));
+        let run = run.run(START).expect("a run");
+        let told = [0, 1, 2].map(|event| run.times_of(event).count());
+        assert_eq!(told, [1, 1, 1], "{span:?}");
+    }
+}
+
 #[test]
 fn an_observer_that_changes_the_shape_of_a_matrix_is_refused() {
     let lattice = IsospectralFlow::toda(3).expect("a flow");
