@@ -11,7 +11,9 @@
 //! |---|---|---|---|
 //! | Euler | any | 0 | \|μ\|² |
 //! | Lagrange | (A, A, C) | (0, 0, w) | μ₃ |
-//! | Kovalevskaya | (2C, 2C, C) | (w, 0, 0) | \|(ω₁ + iω₂)² − (w/C)(γ₁ + iγ₂)\|² |
+//! | Kovalevskaya | (2C, 2C, C) | (w₁, w₂, 0) | \|(ω₁ + iω₂)² − ((w₁ + iw₂)/C)(γ₁ + iγ₂)\|² |
+//!
+//! The axis of Lagrange's and Kovalevskaya's top may be any of the three.
 //!
 //! f is affine in (μ, γ), so its Taylor coefficients are short sums, and Lie series apply
 //! ([`LieSeries`](crate::methods::LieSeries)).
@@ -53,29 +55,36 @@ pub struct HeavyTop<S = f64> {
 enum Integral<S> {
     None,
     Euler,
-    Lagrange,
-    /// w/C.
-    Kovalevskaya(S),
+    /// The axis.
+    Lagrange(usize),
+    /// The axis k, and w/C along the axes k + 1 and k + 2.
+    Kovalevskaya(usize, [S; 2]),
 }
 
 impl<S: Real> HeavyTop<S> {
     /// Makes a top from the principal moments of inertia about the fixed point, and w. Integrable cases are recognised
-    /// by these numbers, and then μ₃ or |μ|² is one of the invariants.
+    /// by these numbers, with any axis, and then the fourth integral is one of the invariants.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] for a moment that is not finite and positive, and a w that is not finite.
     pub fn new(inertia: [f64; 3], weight: [f64; 3]) -> Result<Self, Error> {
         check_inertia(&inertia)?;
         check_finite("weight", &weight)?;
-        let ([a, b, c], [x, y, z]) = (inertia, weight);
-        let integral = if weight == [0.0; 3] {
-            Integral::Euler
-        } else if a == b && x == 0.0 && y == 0.0 {
-            Integral::Lagrange
-        } else if a == b && a == 2.0 * c && y == 0.0 && z == 0.0 {
-            Integral::Kovalevskaya(S::lit(x / c))
-        } else {
-            Integral::None
+        let about = |k: usize| {
+            // From the axis k on in cyclic order.
+            let [[c, a, b], [z, x, y]] =
+                [inertia, weight].map(|all| [0, 1, 2].map(|i| all[(k + i) % 3]));
+            if a == b && x == 0.0 && y == 0.0 {
+                Some(Integral::Lagrange(k))
+            } else if a == b && a == 2.0 * c && z == 0.0 {
+                Some(Integral::Kovalevskaya(k, [x, y].map(|w| S::lit(w / c))))
+            } else {
+                None
+            }
+        };
+        let integral = match weight == [0.0; 3] {
+            true => Integral::Euler,
+            false => [2, 0, 1].into_iter().find_map(about).unwrap_or(Integral::None),
         };
         let vector = |x: [f64; 3]| Vector3::from(x.map(S::lit));
         let inverse_inertia = vector(inertia.map(|j| 1.0 / j));
@@ -118,11 +127,11 @@ impl<S: Real> HeavyTop<S> {
         match self.integral {
             Integral::None => None,
             Integral::Euler => Some(dot(mu, mu)),
-            Integral::Lagrange => Some(mu[2]),
-            Integral::Kovalevskaya(c) => {
-                let w = self.omega(mu);
-                let re = w[0] * w[0] - w[1] * w[1] - c * gamma[0];
-                let im = S::lit(2.0) * w[0] * w[1] - c * gamma[1];
+            Integral::Lagrange(k) => Some(mu[k]),
+            Integral::Kovalevskaya(k, [c, d]) => {
+                let (w, [i, j]) = (self.omega(mu), [1, 2].map(|n| (k + n) % 3));
+                let re = w[i] * w[i] - w[j] * w[j] - (c * gamma[i] - d * gamma[j]);
+                let im = S::lit(2.0) * w[i] * w[j] - (c * gamma[j] + d * gamma[i]);
                 Some(re * re + im * im)
             }
         }
@@ -133,8 +142,8 @@ impl<S: Real> HeavyTop<S> {
         match self.integral {
             Integral::None => 0,
             Integral::Euler => 2,
-            Integral::Lagrange => 1,
-            Integral::Kovalevskaya(_) => 4,
+            Integral::Lagrange(_) => 1,
+            Integral::Kovalevskaya(..) => 4,
         }
     }
 
@@ -171,8 +180,8 @@ impl<S: Real> Hamiltonian<Se3<S>> for HeavyTop<S> {
         let fourth = match self.integral {
             Integral::None => None,
             Integral::Euler => Some("|μ|²"),
-            Integral::Lagrange => Some("μ₃"),
-            Integral::Kovalevskaya(_) => Some("Kovalevskaya's integral"),
+            Integral::Lagrange(k) => Some(["μ₁", "μ₂", "μ₃"][k]),
+            Integral::Kovalevskaya(..) => Some("Kovalevskaya's integral"),
         };
         let degree = self.degree_of_fourth_integral();
         let fourth = fourth.map(|name| Invariant::of_the_flow(name, degree));

@@ -76,11 +76,12 @@ impl<F: Fn(f64, &Mat<f64>, &mut Mat<f64>, &mut Mat<f64>)> Lyapunov<F> {
         Ok((self.group.0.identity(), (Mat::zeros(n, 1), x)))
     }
 
-    /// σ_i/t, the mean growth over the time t since Q = 𝟙, σ = 0, in falling order.
+    /// σ_i/t, the mean growth over the time t since Q = 𝟙, σ = 0, in falling order. At t = 0 they are 0.
     ///
     /// After long times σ is mostly in falling order itself. It is not where DF does not mix the directions of Q.
     pub fn exponents(&self, t: f64, (_, (sigma, _)): &(GroupMatrix, Growth)) -> Vec<f64> {
-        let mut exponents: Vec<f64> = sigma.col_as_slice(0).iter().map(|s| s / t).collect();
+        let mut exponents: Vec<f64> = sigma.col_as_slice(0).to_vec();
+        exponents.iter_mut().filter(|s| **s != 0.0).for_each(|s| *s /= t);
         exponents.sort_unstable_by(|a, b| b.total_cmp(a));
         exponents
     }

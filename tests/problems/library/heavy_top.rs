@@ -57,6 +57,28 @@ fn integrals_of_the_integrable_cases() {
     assert!((values(kovalevskaya, &end) - values(kovalevskaya, &START)).abs() > 1e-3);
 }
 
+/// The axis of a top may be any of the three, and the centre of mass of Kovalevskaya's anywhere in its equator.
+#[test]
+fn integrable_tops_about_any_axis() {
+    for k in 0..3 {
+        let axes = |c: f64, a: f64, b: f64| {
+            let mut all = [0.0; 3];
+            [c, a, b].into_iter().enumerate().for_each(|(i, x)| all[(k + i) % 3] = x);
+            all
+        };
+        let lagrange = HeavyTop::new(axes(0.6, 1.0, 1.0), axes(1.3, 0.0, 0.0)).unwrap();
+        assert_eq!(lagrange.problem().invariants()[3].name, ["μ₁", "μ₂", "μ₃"][k]);
+        keeps_its_invariants(&lagrange.problem(), &START, 10.0, 4000, 1e-9);
+        for [x, y] in [[1.1, 0.0], [0.0, -0.7], [0.6, 0.8]] {
+            let top = HeavyTop::new(axes(0.5, 1.0, 1.0), axes(0.0, x, y)).unwrap();
+            assert_eq!(top.problem().invariants()[3].name, "Kovalevskaya's integral");
+            keeps_its_invariants(&top.problem(), &START, 10.0, 4000, 1e-9);
+        }
+        let tilted: HeavyTop = HeavyTop::new(axes(0.5, 1.0, 1.0), axes(0.1, 1.1, 0.0)).unwrap();
+        assert!(!tilted.is_integrable());
+    }
+}
+
 /// Hanging straight down is a fixed point, bit for bit; upright with enough spin stays upright.
 #[test]
 fn sleeping_tops() {
