@@ -577,7 +577,7 @@ impl Search {
         self.zero_between([left, end], g, found)
     }
 
-    /// Calls `found` with the zero between two points of opposite sign.
+    /// Calls `found` with the zero between two points of opposite sign. A pole may be infinite there.
     fn zero_between(
         &self,
         [left, right]: [(f64, f64); 2],
@@ -587,7 +587,13 @@ impl Search {
         if let Some(rising) = passes(left.1, right.1)
             && self.direction.has(rising)
         {
-            found(bracket::zero(left, right, g)?, rising);
+            let mut g = |t: f64| match g(t) {
+                Err(RunError::Event { value, .. }) if value.is_infinite() => {
+                    Ok(f64::MAX.copysign(value))
+                }
+                value => value,
+            };
+            found(bracket::zero(left, right, &mut g)?, rising);
         }
         Ok(())
     }

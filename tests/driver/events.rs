@@ -561,3 +561,18 @@ fn the_end_of_a_step_that_is_cut_is_seen() {
     assert_eq!(ends(0.8), [(1.0, whole.y)]);
     assert_eq!(ends(1.0), []);
 }
+
+/// A pole that is a number is found, though g is infinite there.
+#[test]
+fn a_pole_at_a_number_is_found() {
+    let (body, method) = (body(), Rkmk::new(DOPRI5, Exp));
+    for pole in [2.0, 2.1, 0.75, 3.0] {
+        for span in [[0.0, 6.03], [6.03, 0.0]] {
+            let run = Solve::new(&body, &method, span).tolerances(1e-9, 1e-9);
+            let run = run.event(Event::new("pole", move |t: f64, _: &V| 1.0 / (t - pole)));
+            let run = run.run(START).expect("a run");
+            assert_eq!(run.times_of(0).count(), 1, "{pole}");
+            assert!((run.events[0].t - pole).abs() < 1e-14, "{}", run.events[0].t);
+        }
+    }
+}
