@@ -9,12 +9,13 @@
 //!
 //! The attitude is g = S₀ R_z(φ) T(m)ᵀ with the triad T(m) of m and the axis z, and
 //! φ̇ = L(m_x²/J_x + m_y²/J_y)/(m_x² + m_y²): a positive combination of L/J_x and L/J_y. It is
-//! integrated as L·min(1/J_x, 1/J_y)·t plus a positive elliptic integral of the third kind, so that
-//! nothing cancels at any ratio of the inertias (the textbook forms start from L/J_z or 2E/L and
-//! lose as many digits as that ratio has). Of the modulus only 1 − k² is used, because near the separatrix
-//! k loses all its digits.
+//! integrated as (L/J_y)·t and an elliptic integral of the third kind that weighs m_x. That weight is at most cn²τ, because
+//! n = B²/A² ≥ 1, and half of the time on average. So no more than a bit cancels at any ratio of the inertias (the textbook
+//! forms start from L/J_z or 2E/L and lose as many digits as that ratio has). And where J_z is nearly J_y, so that the
+//! integral is divided by a small λ, the weight is as small. Of the modulus only 1 − k² is used, because near the separatrix k
+//! loses all its digits.
 //!
-//! These formulas set up an orbit, and evaluate it near the separatrix (1 − k² < 0.013). Elsewhere sn, cn, dn and the
+//! These formulas set up an orbit, and evaluate it near the separatrix (1 − k² < 0.013) and for large n. Elsewhere sn, cn, dn and the
 //! periodic part of φ come from [`Theta`], which is five times as fast.
 //!
 //! Source: notes on E. T. Whittaker, Analytical Dynamics, § 69; B. C. Carlson's integrals.
@@ -77,13 +78,11 @@ struct Elliptic {
     ladder: Ladder,
     /// K, infinite on the separatrix.
     quarter: f64,
-    /// B²/A².
+    /// n = B²/A² ≥ 1.
     ratio: f64,
-    /// φ = base·t + swing·(D(τ) − D(τ₀)).
+    /// φ = base·t + swing·(D(τ) − D(τ₀)), D = ∫ m_x²/(m_x² + m_y²) dτ.
     base: f64,
     swing: f64,
-    /// D is ∫ m_x²/(m_x² + m_y²) dτ if true, else ∫ m_y²/(m_x² + m_y²) dτ.
-    weigh_x: bool,
     d_quarter: f64,
     d0: f64,
     /// S₀ = g₀ T(m₀).
@@ -206,7 +205,6 @@ impl Fast {
 
 /// The place on the elliptic orbit at a time: τ = 2Kj + r with |r| ≤ K, and sn, cn, dn at r.
 struct Phase {
-    tau: f64,
     half_turns: f64,
     sn: f64,
     cn: f64,
@@ -257,7 +255,7 @@ impl Elliptic {
         let axes @ [x, y, z] = if about_c { [a, b, c] } else { [c, b, a] };
 
         // Sums of squares of one sign each: nothing cancels, nothing underflows.
-        let ratio = j[y] * (j[x] - j[z]) / (j[x] * (j[y] - j[z]));
+        let ratio = (j[y] * (j[x] - j[z]) / (j[x] * (j[y] - j[z]))).max(1.0);
         let amplitude_x = m[x].hypot(m[y] / ratio.sqrt());
         let amplitude_y = (m[x] * ratio.sqrt()).hypot(m[y]);
         let tilt = j[z] * (j[y] - j[x]) / (j[y] * (j[z] - j[x]));
@@ -294,8 +292,6 @@ impl Elliptic {
         };
 
         let length = m.norm();
-        let weigh_x = j[x] <= j[y];
-        let (low, high) = if weigh_x { (j[x], j[y]) } else { (j[y], j[x]) };
         let mut motion = Elliptic {
             axes,
             amplitude,
@@ -307,18 +303,17 @@ impl Elliptic {
             ladder: Ladder::new(kc2),
             quarter,
             ratio,
-            base: length / high,
-            swing: length * ((high - low) / (high * low)) / lambda,
-            weigh_x,
+            base: length / j[y],
+            swing: length * ((j[y] - j[x]) / (j[y] * j[x])) / lambda,
             d_quarter: 0.0,
             d0: 0.0,
             s0: g0 * triad(&m0, z),
             fast: None,
         };
         if quarter.is_finite() {
-            motion.d_quarter = motion.third_kind(quarter, 1.0, 0.0, kc2.sqrt())?;
+            motion.d_quarter = motion.third_kind(1.0, 0.0, kc2.sqrt())?;
         }
-        motion.fast = motion.fast(length, low, high)?;
+        motion.fast = motion.fast(length, j[x], j[y])?;
         if motion.fast.is_none() {
             motion.d0 = motion.swept(&motion.phase(0.0))?;
         }
@@ -326,18 +321,18 @@ impl Elliptic {
     }
 
     /// From |m| and the two moments of inertia of the plane that m circles in.
-    fn fast(&self, length: f64, low: f64, high: f64) -> Result<Option<Fast>, Error> {
+    fn fast(&self, length: f64, j_x: f64, j_y: f64) -> Result<Option<Fast>, Error> {
         let theta = match self.quarter.is_finite() {
             true => Theta::new(self.kc2, self.quarter, self.ratio)?,
             false => None,
         };
         Ok(theta.map(|theta| {
             let (s, c) = self.periodic(&theta, theta.angle(self.tau0));
-            // L/J_high·(1 + (J_high − J_low)/J_low·D/K), with what the rounding of its two largest
-            // steps leaves: after 1e5 radians the last digit of this rate is the error of the angle.
-            let base = length / high;
-            let left = base.mul_add(-high, length) / high;
-            let swing = base * ((high - low) / low * (self.d_quarter / self.quarter));
+            // L/J_y·(1 + (J_y − J_x)/J_x·D/K), with what the rounding of its two largest steps leaves:
+            // after 1e5 radians the last digit of this rate is the error of the angle.
+            let base = length / j_y;
+            let left = base.mul_add(-j_y, length) / j_y;
+            let swing = base * ((j_y - j_x) / j_x * (self.d_quarter / self.quarter));
             let rate = base + swing;
             let added = rate - base;
             let left = (base - (rate - added)) + (swing - added) + left;
@@ -353,11 +348,11 @@ impl Elliptic {
         }))
     }
 
-    /// (sin p, cos p): ϑ₁ sweeps forward where D weighs m_x.
+    /// (sin p, cos p): ϑ₁ sweeps forward where φ̇ is larger where m_x is.
     #[inline]
     fn periodic(&self, theta: &Theta, v: (f64, f64)) -> (f64, f64) {
         let (s, c) = theta.periodic(v);
-        (if self.weigh_x { s } else { -s }, c)
+        (if self.swing >= 0.0 { s } else { -s }, c)
     }
 
     #[inline]
@@ -401,7 +396,7 @@ impl Elliptic {
             false => (-2.0 * self.quarter).mul_add(half_turns, tau),
         };
         let (sn, cn, dn) = self.ladder.jacobi(r);
-        Phase { tau, half_turns, sn, cn, dn }
+        Phase { half_turns, sn, cn, dn }
     }
 
     fn place_at(&self, &Phase { half_turns, sn, cn, dn, .. }: &Phase) -> Vector3<f64> {
@@ -426,38 +421,28 @@ impl Elliptic {
     fn swept(&self, phase: &Phase) -> Result<f64, Error> {
         let whole =
             if phase.half_turns == 0.0 { 0.0 } else { 2.0 * phase.half_turns * self.d_quarter };
-        Ok(whole + self.third_kind(phase.tau, phase.sn, phase.cn, phase.dn)?)
+        Ok(whole + self.third_kind(phase.sn, phase.cn, phase.dn)?)
     }
 
-    /// D for |τ| ≤ K. With s, c, d = sn, cn, dn, n = B²/A² and p = c² + n s²:
-    /// ∫ n s²/p = n s³/3 R_J(c², d², 1, p), and
-    /// ∫ c²/p = s·(c·R_C(d², pq) + (1−k²)s²/(3n)·R_J(c², d², 1, q)), q = c² + (1−k²)s²/n,
-    /// which is τ − ∫ n s²/p without its cancellation (DLMF 19.21.12).
-    fn third_kind(&self, tau: f64, s: f64, c: f64, d: f64) -> Result<f64, Error> {
+    /// D for |τ| ≤ K. With s, c, d = sn, cn, dn, n = B²/A², p = c² + n s² and q = c² + (1−k²)s²/n:
+    /// ∫ c²/p = s·(c·R_C(d², pq) + (1−k²)s²/(3n)·R_J(c², d², 1, q)) (DLMF 19.21.12).
+    fn third_kind(&self, s: f64, c: f64, d: f64) -> Result<f64, Error> {
         let (n, kc2) = (self.ratio, self.kc2);
         let (c2, d2, s2) = (c * c, d * d, s * s);
         if s == 0.0 {
             return Ok(0.0);
         }
-        let p = c2 + n * s2;
+        let (p, q) = (c2 + n * s2, c2 + kc2 * s2 / n);
         let far_on_separatrix = kc2 == 0.0 && c2 < 1e-30;
-        let x_part = || -> Result<f64, Error> {
-            let q = c2 + kc2 * s2 / n;
-            let elementary = match (c > 0.0, far_on_separatrix) {
-                (true, false) => c * rc(d2, p * q)?,
-                (_, true) => rc(1.0, n)?,
-                _ => 0.0,
-            };
-            let rest = match kc2 > 0.0 {
-                true => kc2 * s2 / (3.0 * n) * rj(c2, d2, 1.0, q)?,
-                false => 0.0,
-            };
-            Ok(s * (elementary + rest))
+        let elementary = match (c > 0.0, far_on_separatrix) {
+            (true, false) => c * rc(d2, p * q)?,
+            (_, true) => rc(1.0, n)?,
+            _ => 0.0,
         };
-        match (self.weigh_x, far_on_separatrix) {
-            (true, _) => x_part(),
-            (false, true) => Ok(tau - x_part()?),
-            (false, false) => Ok(n * s * s2 / 3.0 * rj(c2, d2, 1.0, p)?),
-        }
+        let rest = match kc2 > 0.0 {
+            true => kc2 * s2 / (3.0 * n) * rj(c2, d2, 1.0, q)?,
+            false => 0.0,
+        };
+        Ok(s * (elementary + rest))
     }
 }

@@ -21,6 +21,8 @@ use crate::scalar::Trig;
 
 /// The largest nome: 1 − k² = 0.0129.
 const Q_MAX: f64 = 0.25;
+/// The largest n. η is about n^{−½}, and p turns by a radian while v moves by η: more would cost digits.
+const N_MAX: f64 = 1e4;
 const TERMS: usize = 6;
 
 /// Coefficients of 1, x, x², …
@@ -72,7 +74,7 @@ pub(super) struct Theta {
 }
 
 impl Theta {
-    /// From 1 − k², K and n; `None` if the nome is above [`Q_MAX`].
+    /// From 1 − k², K and n; `None` if the nome is above [`Q_MAX`], or n above [`N_MAX`].
     pub(super) fn new(kc2: f64, quarter: f64, n: f64) -> Result<Option<Self>, Error> {
         let frequency = FRAC_PI_2 / quarter;
         let k2 = 1.0 - kc2;
@@ -80,10 +82,9 @@ impl Theta {
             true => (-2.0 * frequency * rf(0.0, k2, 1.0)?).exp(),
             false => 0.0,
         };
-        if q > Q_MAX {
+        if q > Q_MAX || n > N_MAX {
             return Ok(None);
         }
-        let n = n.max(1.0); // by rounding it may be less
         let cos2 = (n - 1.0) / n;
         let eta = match cos2 > 0.0 {
             true => frequency * rf(cos2, 1.0 - kc2 / n, 1.0)? / n.sqrt(),
