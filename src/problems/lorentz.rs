@@ -12,7 +12,7 @@
 //! Source: J. D. Jackson, Classical Electrodynamics, section 12.1.
 
 use faer::Mat;
-use nalgebra::Vector3;
+use nalgebra::{Matrix4, Vector3};
 
 use super::{Invariant, Invariants, Problem};
 use crate::actions::Linear;
@@ -53,6 +53,68 @@ impl<F: Fn(f64, &Mat<f64>) -> (Vector3<f64>, Vector3<f64>)> ChargedParticle<F> {
         super::rigid_body::check_finite("ratio", &[ratio])?;
         Ok(ChargedParticle { group: MatrixGroup::indefinite(3, 1)?, ratio, field })
     }
+}
+
+/// exp(tF) for F ∈ so(3,1): the motion in constant fields, with (q/m) F in place of F.
+///
+/// F has the eigenvalues ±a and ±ib with a² − b² = E² − B² and ab = |E·B|. So exp(tF) is a polynomial of degree 3 in F, with
+/// x = at, y = bt and
+///
+/// c₂ = (cosh x − cos y)/(x² + y²),    c₃ = (sinh x/x − sin y/y)/(x² + y²),    c₀ = cosh x − x²c₂,    c₁ = sinh x/x − x²c₃.
+///
+/// Where x² + y² < 1 these are sums of powers: scaling and squaring loses all digits for fields with E² = B² and E·B = 0 at a
+/// large t, because F³ = 0 there. Entries beyond the range of f64 are infinite or NaN. Allocates.
+///
+/// # Errors
+/// [`Error::Shape`] for an F that is not 4×4.
+pub fn lorentz_transformation(tensor: &Mat<f64>, t: f64) -> Result<Mat<f64>, Error> {
+    let (rows, cols) = tensor.shape();
+    if (rows, cols) != (4, 4) {
+        return Err(Error::Shape { arg: "F", rows, cols, expected_rows: 4, expected_cols: 4 });
+    }
+    let f = Matrix4::from_fn(|i, j| t * tensor[(i, j)]);
+    let e = Vector3::new(f[(0, 3)], f[(1, 3)], f[(2, 3)]);
+    let b = Vector3::new(f[(1, 2)], f[(2, 0)], f[(0, 1)]);
+    let (sigma, pi) = ((e - b).dot(&(e + b)), e.dot(&b));
+    // x² and y², of which the larger one is found first.
+    let larger = 0.5 * (sigma.abs() + sigma.hypot(2.0 * pi));
+    let smaller = if larger > 0.0 { pi / larger * pi } else { 0.0 };
+    let [x2, y2] = if sigma >= 0.0 { [larger, smaller] } else { [smaller, larger] };
+    let [c0, c1, c2, c3] = coefficients(x2, y2);
+    let f2 = f * f;
+    let g = Matrix4::from_diagonal_element(c0) + f * c1 + f2 * c2 + f2 * f * c3;
+    Ok(Mat::from_fn(4, 4, |i, j| g[(i, j)]))
+}
+
+/// c₀ to c₃ of x² and y².
+fn coefficients(x2: f64, y2: f64) -> [f64; 4] {
+    let d = x2 + y2;
+    if d < 1.0 {
+        // Σ h_k/(2k + 2)! and so on, for h_k = Σ (x²)ⁱ(−y²)^(k − i).
+        let mut sums = [0.0; 4];
+        let (mut h, mut power, mut factorial) = (1.0, 1.0, 2.0);
+        for k in 1..12 {
+            let [n, m] = [f64::from(2 * k + 1), f64::from(2 * k + 2)];
+            sums[2] += h / factorial;
+            sums[3] += h / (factorial * n);
+            factorial *= n * m;
+            sums[0] += h / factorial;
+            sums[1] += h / (factorial * (m + 1.0));
+            power *= -y2;
+            h = x2 * h + power;
+        }
+        return [1.0 + x2 * y2 * sums[0], 1.0 + x2 * y2 * sums[1], sums[2], sums[3]];
+    }
+    let [x, y] = [x2, y2].map(f64::sqrt);
+    let sinh_by_x = if x > 0.0 { x.sinh() / x } else { 1.0 };
+    let sin_by_y = if y > 0.0 { y.sin() / y } else { 1.0 };
+    let [p, q] = [x2 / d, y2 / d];
+    [
+        q * x.cosh() + p * y.cos(),
+        q * sinh_by_x + p * sin_by_y,
+        (x.cosh() - y.cos()) / d,
+        (sinh_by_x - sin_by_y) / d,
+    ]
 }
 
 /// The four-velocity (γv, γ) of a velocity v in units of c, as a column.

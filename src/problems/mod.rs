@@ -79,7 +79,7 @@ pub use invariants::{Invariant, Invariants, Law, Origin, Scale, explained_by_rou
 #[cfg(feature = "dense")]
 pub use isospectral::{IsospectralFlow, toda_lattice};
 #[cfg(feature = "dense")]
-pub use lorentz::{ChargedParticle, four_velocity};
+pub use lorentz::{ChargedParticle, four_velocity, lorentz_transformation};
 #[cfg(feature = "dense")]
 pub use lyapunov::Lyapunov;
 #[cfg(feature = "dense")]

@@ -2,7 +2,9 @@
 
 use super::*;
 use faer::Mat;
-use lieflow::problems::{ChargedParticle, four_velocity};
+use lieflow::dense::{multiply, norm};
+use lieflow::groups::MatrixGroup;
+use lieflow::problems::{ChargedParticle, four_velocity, lorentz_transformation};
 use nalgebra::Vector3;
 
 type V = Vector3<f64>;
@@ -56,4 +58,48 @@ fn orders_and_the_mass_shell() {
         assert!(four_velocity(v).is_err());
     }
     assert!(ChargedParticle::new(f64::INFINITY, field).is_err());
+}
+
+/// The closed form is exp; and where E² = B² and E·B = 0, it is 𝟙 + tF + ½t²F² at every t, to rounding.
+#[test]
+fn constant_fields_in_closed_form() {
+    let tensor = |e: Vector3<f64>, b: Vector3<f64>| {
+        let particle = ChargedParticle::new(1.0, move |_: f64, _: &Mat<f64>| (e, b)).unwrap();
+        let mut tensor = particle.group().zero();
+        particle.f(0.0, &four_velocity([0.0; 3]).unwrap(), &mut tensor, &mut particle.work());
+        tensor
+    };
+    let close = |a: &Mat<f64>, b: &Mat<f64>, bound: f64, what: &str| {
+        let gap = norm((a - b).as_ref()) / norm(b.as_ref());
+        assert!(gap < bound, "{what}: {gap:e}");
+    };
+    let group = MatrixGroup::indefinite(3, 1).unwrap();
+    let fields = [
+        [[0.3, -0.2, 0.9], [0.5, 1.1, -0.4]],
+        [[1.0, 0.0, 0.0], [0.0, 0.0, 0.0]],
+        [[0.0, 0.0, 0.0], [0.0, 0.7, 0.4]],
+        [[0.3, 0.0, 0.0], [0.7, 0.0, 0.0]],
+        [[1.0, 2.0, 0.0], [0.0, 0.0, 2.0]],
+        [[1.0, 0.0, 1e-3], [0.0, 1.0, 1e-3]],
+        [[0.0, 0.0, 0.0], [0.0, 0.0, 0.0]],
+    ];
+    for [e, b] in fields {
+        let f = tensor(e.into(), b.into());
+        for t in [-3.0, 1e-9, 0.1, 0.4, 0.8, 1.3, 7.0] {
+            let mut scaled = group.zero();
+            group.axpy(t, &f, &mut scaled);
+            let exp = Exp.eval(&group, &scaled).unwrap();
+            let closed = lorentz_transformation(&f, t).unwrap();
+            close(&closed, &exp, 2e-13, &format!("{e:?} {b:?} {t}"));
+        }
+    }
+    let f = tensor(Vector3::x(), Vector3::y());
+    let f2 = multiply(f.as_ref(), f.as_ref());
+    for t in [1.0, 30.0, 1e3, 1e6] {
+        let exact = Mat::from_fn(4, 4, |i, j| {
+            f64::from(u8::from(i == j)) + t * f[(i, j)] + 0.5 * t * t * f2[(i, j)]
+        });
+        close(&lorentz_transformation(&f, t).unwrap(), &exact, 1e-15, &format!("{t}"));
+    }
+    assert!(lorentz_transformation(&Mat::zeros(3, 3), 1.0).is_err());
 }

@@ -1,11 +1,10 @@
 //! `kind = "lorentz"`: the four-velocity of a charged particle in constant fields, in SO(3,1); see
 //! [`ChargedParticle`]. u̇ = (q/m) F u in the particle's proper time, an equation of linear type.
 
+use lieflow::Problem;
 use lieflow::dense::{multiply, squared_norm};
 use lieflow::groups::{AlgebraMatrix, LieAlgebra, MatrixGroup};
-use lieflow::maps::Exp;
-use lieflow::problems::{ChargedParticle, Flow, four_velocity};
-use lieflow::{CoordinateMap, Problem};
+use lieflow::problems::{ChargedParticle, Flow, four_velocity, lorentz_transformation};
 use nalgebra::Vector3;
 
 use super::flow::OnMatrices;
@@ -95,11 +94,7 @@ impl System for Particle {
         "four-velocity, by SO(3,1)".into()
     }
     fn exact(&self, [t0, t1]: [f64; 2]) -> Option<Result<Mat<f64>, Error>> {
-        let turned = MatrixGroup::indefinite(3, 1).and_then(|group| {
-            let mut tensor = group.zero();
-            group.axpy(t1 - t0, &self.tensor, &mut tensor);
-            Exp.eval(&group, &tensor)
-        });
+        let turned = lorentz_transformation(&self.tensor, t1 - t0);
         Some(turned.map(|g| multiply(g.as_ref(), self.start.as_ref())))
     }
     fn figure(&self) -> Figure {

@@ -190,7 +190,8 @@ def expm(
     unitary to rounding at every norm. Up to n = 6 many real matrices are computed in SIMD lanes. ``threads`` divides the
     matrices among threads; the result does not depend on it. Errors: :class:`lieflow.ArgumentError` with the place of a
     matrix that is not skew, where that is said, or has no exponential. Relative error: a small multiple of ε times the
-    condition number of exp.
+    condition number of exp, except for matrices far from normal: where the powers of abs(A) are much larger than those of A,
+    as for [[s, -s], [s, -s]], it is larger.
     """
     if type(threads) is not int or threads < 1:
         threads = whole("threads", threads, 1)
