@@ -1,14 +1,10 @@
 //! `kind = "subspace"`: the flow of k-dimensional subspaces of ℝⁿ to the leading invariant subspace of a
 //! symmetric matrix, on the Grassmann manifold of projectors; see [`SubspaceFlow`].
 //!
-//! The span of X moves as that of e^{tA}X. With V₁ the leading eigenvectors and V₂ the others, it is the
-//! span of V₁ + V₂Z for Z = (V₂ᵀPV₁)(V₁ᵀPV₁)⁻¹, and the sines of its principal angles to that of V₁ are the
-//! singular values of V₂ᵀP.
+//! The span of X moves as that of e^{tA}X: each row of VᵀX is multiplied by e^{tλ}, for V the eigenvectors of A. With V₁ the
+//! leading ones and V₂ the others, the sines of its principal angles to the span of V₁ are the singular values of V₂ᵀP.
 
-use faer::MatRef;
-use lieflow::dense::{
-    inverse, multiply, norm, singular_values, symmetric_eigen, symmetric_eigenvalues,
-};
+use lieflow::dense::{multiply, norm, qr, singular_values, symmetric_eigen};
 use lieflow::problems::SubspaceFlow;
 
 use super::entries::{ROUNDING, check_rows, numbered, symmetric, trace, upper, upper_columns};
@@ -38,12 +34,9 @@ struct Subspace {
     /// Eigenvalues of A in ascending order, and its eigenvectors.
     eigenvalues: Vec<f64>,
     eigenvectors: Mat<f64>,
-    /// Z, where no angle is a right one.
-    graph: Option<Mat<f64>>,
+    /// VᵀX for an orthonormal basis X of the initial subspace.
+    coordinates: Mat<f64>,
 }
-
-/// Below this cos² of an angle to the leading subspace nothing is left of Z.
-const RIGHT: f64 = 1e-10;
 
 fn read(keys: Keys) -> Result<Forms, ReadError> {
     let a = keys.a.and_then(|a| symmetric("a", &a, None, ROUNDING));
@@ -55,30 +48,47 @@ fn read(keys: Keys) -> Result<Forms, ReadError> {
     let start = flow.span(&x).map_err(wrong)?;
     let (eigenvalues, eigenvectors) = symmetric_eigen(a.as_ref())
         .map_err(|_| Refusal::at("a", "its eigenvalues cannot be found"))?;
-    let mut subspace =
-        Subspace { flow, dimension: x.ncols(), start, eigenvalues, eigenvectors, graph: None };
-    subspace.graph = subspace.graph_at(&subspace.start);
-    Ok(Forms::of(subspace))
+    let coordinates = multiply(eigenvectors.transpose(), qr(x.as_ref()).0.as_ref());
+    let dimension = x.ncols();
+    Ok(Forms::of(Subspace { flow, dimension, start, eigenvalues, eigenvectors, coordinates }))
 }
 
 impl Subspace {
-    /// V₂ and V₁.
-    fn parts(&self) -> [MatRef<'_, f64>; 2] {
-        let (v2, v1) = self.eigenvectors.split_at_col(self.start.nrows() - self.dimension);
-        [v2, v1]
-    }
-    /// Z.
-    fn graph_at(&self, p: &Mat<f64>) -> Option<Mat<f64>> {
-        let [v2, v1] = self.parts();
-        let times_v1 =
-            |v: MatRef<'_, f64>| multiply(multiply(v.transpose(), p.as_ref()).as_ref(), v1);
-        let cosines2 = times_v1(v1);
-        let least = symmetric_eigenvalues(cosines2.as_ref()).ok()?.into_iter().next()?;
-        (least > RIGHT)
-            .then(|| multiply(times_v1(v2).as_ref(), inverse(cosines2.as_ref()).as_ref()))
+    /// A basis of the subspace after the time t, in terms of the eigenvectors. Its columns are independent for every t: a row
+    /// of each is 1 there and 0 in the others, and these rows are among the largest at that time.
+    fn basis_after(&self, t: f64) -> Mat<f64> {
+        let (mut b, rates) = (self.coordinates.clone(), &self.eigenvalues);
+        let (n, k) = (b.nrows(), b.ncols());
+        let mut pivots: Vec<Option<usize>> = vec![None; k];
+        for _ in 0..k {
+            let free = |j: usize| pivots[j].is_none();
+            let rows = (0..n).filter(|&i| !pivots.contains(&Some(i)));
+            let all = rows.flat_map(|i| (0..k).filter(|&j| free(j)).map(move |j| (i, j)));
+            // The logarithm of the entry at that time.
+            let size = |&(i, j): &(usize, usize)| b[(i, j)].abs().ln() + t * rates[i];
+            let Some((i, j)) = all.max_by(|a, b| size(a).total_cmp(&size(b))) else { break };
+            let pivot = b[(i, j)];
+            (0..n).for_each(|row| b[(row, j)] /= pivot);
+            for other in (0..k).filter(|&other| other != j) {
+                let factor = b[(i, other)];
+                (0..n).for_each(|row| b[(row, other)] -= factor * b[(row, j)]);
+                b[(i, other)] = 0.0;
+            }
+            pivots[j] = Some(i);
+        }
+        for (j, pivot) in pivots.iter().enumerate() {
+            let of_pivot = pivot.map_or(0.0, |i| rates[i]);
+            for (i, rate) in rates.iter().enumerate() {
+                // Nothing stays nothing, also where its factor would be infinite.
+                if b[(i, j)] != 0.0 && *pivot != Some(i) {
+                    b[(i, j)] *= (t * (rate - of_pivot)).exp();
+                }
+            }
+        }
+        b
     }
     fn angles(&self, p: &Mat<f64>) -> Vec<f64> {
-        let v2 = self.parts()[0];
+        let v2 = self.eigenvectors.get(.., ..self.start.nrows() - self.dimension);
         let sines = singular_values(multiply(v2.transpose(), p.as_ref()).as_ref());
         let sines = sines.unwrap_or_else(|_| vec![f64::NAN; v2.ncols()]);
         let angles = sines.iter().map(|sine| sine.min(1.0).asin());
@@ -130,17 +140,9 @@ impl System for Subspace {
         let n = self.start.nrows();
         format!("projector onto {} of {n} dimensions, conjugated by SO({n})", self.dimension)
     }
-    /// Z(t)_ij = e^{t(λ_i − λ_j)} Z_ij, which falls where the columns of e^{tA}X become one.
     fn exact(&self, [t0, t1]: [f64; 2]) -> Option<Result<Mat<f64>, Error>> {
-        let mut z = self.graph.clone()?;
-        let (others, leading) = self.eigenvalues.split_at(z.nrows());
-        for (j, of_column) in leading.iter().enumerate() {
-            for (i, of_row) in others.iter().enumerate() {
-                z[(i, j)] *= ((t1 - t0) * (of_row - of_column)).exp();
-            }
-        }
-        let [v2, v1] = self.parts();
-        Some(self.flow.span(&(v1 + v2 * z)))
+        let basis = self.basis_after(t1 - t0);
+        Some(self.flow.span(&multiply(self.eigenvectors.as_ref(), basis.as_ref())))
     }
     fn figure(&self) -> Figure {
         Figure::Lines("angles")
