@@ -116,5 +116,5 @@ pub use methods::{Method, Step};
 pub use problems::Problem;
 pub use solve::{
     Direction, Event, Integrator, RESTORE_EVERY, RunError, SaveAt, Solution, Solve, Stats,
-    StepControl, TimeGrid, integrate, integrate_adaptive,
+    StepControl, Stops, TimeGrid, integrate, integrate_adaptive,
 };

@@ -5,6 +5,7 @@ use core::cell::Cell;
 use super::control::{Controller, StepControl};
 use super::points::AnyPoints;
 use super::stats::{RunError, Stats};
+use super::stops::Stop;
 use super::streak::{Reach, Run};
 use super::timeline::{Chooser, Pacer, Timeline, size_to};
 use crate::error::StepError;
@@ -71,7 +72,7 @@ impl Timeline {
     pub(super) fn chosen_steps(
         &mut self,
         run: &mut dyn Run,
-        stop: (f64, bool),
+        stop: Stop,
         reach: Reach,
     ) -> Result<(), RunError> {
         let Pacer::ByError(Chooser { h, wall, controller, .. }) = self.pacer else { return Ok(()) };
@@ -86,7 +87,7 @@ impl Timeline {
     fn attempt_steps(
         &mut self,
         run: &mut dyn Run,
-        (stop, jumps): (f64, bool),
+        Stop { t: stop, jumps }: Stop,
         reach: Reach,
         before: &mut Choice,
     ) -> Result<(), RunError> {

@@ -10,6 +10,7 @@ use super::output::{AnyOutput, Keeps, Slot};
 use super::points::AnyPoints;
 use super::solution::{Next, Status};
 use super::stats::RunError;
+use super::stops::Stop;
 use super::streak::{Alone, Reach, Run};
 use super::timeline::Timeline;
 use crate::methods::{Attempts, Step, Streak};
@@ -74,8 +75,8 @@ pub(super) struct Drive<'a> {
     pub(super) times_done: usize,
     pub(super) times_by_steps: bool,
     /// The stops that are still ahead.
-    pub(super) stops: std::vec::IntoIter<f64>,
-    pub(super) next_stop: Option<f64>,
+    pub(super) stops: std::vec::IntoIter<Stop>,
+    pub(super) next_stop: Option<Stop>,
     pub(super) cancel: Option<&'a AtomicBool>,
     pub(super) progress: Option<Box<dyn FnMut(f64) + 'a>>,
     pub(super) checkpoints: Option<Checkpoints<'a>>,
@@ -195,14 +196,14 @@ impl Drive<'_> {
 
     /// Sets the next stop to the first one ahead. A step that an event cut has not reached its stop.
     fn pass_stops(&mut self) {
-        while self.next_stop.is_some_and(|stop| !self.times.is_before(self.times.t, stop)) {
+        while self.next_stop.is_some_and(|stop| !self.times.is_before(self.times.t, stop.t)) {
             self.next_stop = self.stops.next();
         }
     }
 
     /// Takes a step, and steps without output or zeros of events before it.
     fn step(&mut self, output: &mut dyn AnyOutput) -> Result<(), RunError> {
-        let stop = (self.next_stop.unwrap_or(self.times.t1), self.next_stop.is_some());
+        let stop = self.next_stop.unwrap_or(Stop { t: self.times.t1, jumps: false });
         if self.keeps != Keeps::Nothing {
             return self.times.steps_before(&mut Alone(output.points()), stop, Reach::STEP);
         }
@@ -212,7 +213,7 @@ impl Drive<'_> {
         if is_watched {
             steps = steps.min(taken.saturating_add(self.patience.steps()));
         }
-        let time = [self.next_time(), self.next_stop].into_iter().flatten();
+        let time = [self.next_time(), self.next_stop.map(|stop| stop.t)].into_iter().flatten();
         let time = time.reduce(|a, b| if self.times.is_before(a, b) { a } else { b });
         let clock = is_watched.then(Instant::now);
         if self.events.all.is_empty() {

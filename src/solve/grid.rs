@@ -324,20 +324,3 @@ impl SaveAt {
         }
     }
 }
-
-/// Keeps the stops within a span, in the order of the run.
-///
-/// # Errors
-/// [`Error::OutOfRange`] for a stop that is not a number.
-pub(super) fn in_order(stops: &mut Vec<f64>, [t0, t1]: [f64; 2]) -> Result<(), Error> {
-    if let Some(i) = stops.iter().position(|t| t.is_nan()) {
-        return Err(Error::out_of_range(format!("stops[{i}]"), f64::NAN, "a number"));
-    }
-    // f may jump at the end, too: the last step evaluates it before that.
-    stops.retain(|t| (t0.min(t1) < *t && *t < t0.max(t1)) || (*t == t1 && t0 != t1));
-    stops.sort_by(f64::total_cmp);
-    if t1 < t0 {
-        stops.reverse();
-    }
-    Ok(())
-}

@@ -6,6 +6,7 @@ use super::drive::Patience;
 use super::held::Held;
 use super::points::{Estimator, Points};
 use super::stats::{RunError, Stats};
+use super::stops::Stop;
 use super::streak::{Alone, Reach};
 use super::timeline::{Looked, Pace, Timeline};
 use crate::error::Error;
@@ -38,7 +39,7 @@ pub struct Integrator<'a, P: Problem, M: Method<P>> {
     pub(super) points: Points<'a, P, M>,
     pub(super) times: Timeline,
     /// The times at which a step ends, in order.
-    pub(super) stops: Vec<f64>,
+    pub(super) stops: Vec<Stop>,
     patience: Patience,
 }
 
@@ -132,12 +133,12 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
         self.times.steps_before(&mut Alone(&mut self.points), stop, reach)
     }
 
-    /// The time of the next stop, and true; `end` if that is before it.
-    fn stop(&self, end: f64) -> (f64, bool) {
-        let passed = |stop: &f64| !self.times.is_before(self.times.t, *stop);
+    /// The next stop; `end` if that is before it.
+    fn stop(&self, end: f64) -> Stop {
+        let passed = |stop: &Stop| !self.times.is_before(self.times.t, stop.t);
         let next = self.stops.get(self.stops.partition_point(passed)).copied();
-        let next = next.filter(|stop| !self.times.is_before(end, *stop));
-        next.map_or((end, false), |stop| (stop, true))
+        let next = next.filter(|stop| !self.times.is_before(end, stop.t));
+        next.unwrap_or(Stop { t: end, jumps: false })
     }
 
     /// `at` ← the state at a time within the last step, by dense output.

@@ -35,6 +35,7 @@ mod settings;
 mod simple;
 mod solution;
 mod stats;
+mod stops;
 mod streak;
 mod timeline;
 
@@ -49,6 +50,7 @@ pub use operations::{COUNTED_STEPS, operations_of_a_step};
 pub use simple::{integrate, integrate_adaptive};
 pub use solution::{Ended, Interrupted, Next, Occurrence, Solution, Status};
 pub use stats::{RESTORE_EVERY, RunError, Stats};
+pub use stops::Stops;
 
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -245,15 +247,14 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
 
     /// Lets a step end at each of these times, where f or one of its derivatives jumps.
     ///
-    /// Example: the knots of sampled data. f(t) is the value after the jump, in the direction of the run: in a run backward it
-    /// is the value at earlier times. The next step evaluates f at t.
-    ///
-    /// The step that ends there is 4 ε|t| shorter than the way, so that f is not evaluated at t. The state misses this much of
-    /// time at each stop: let the times of many stops begin near 0. Methods that evaluate f only within a step, such as Magnus
-    /// methods, miss nothing ([`Facts`](crate::methods::Facts)).
+    /// Where f jumps, f(t) is the value after the jump, in the direction of the run: in a run backward it is the value at
+    /// earlier times. The next step evaluates f at t. The step that ends there is 4 ε|t| shorter than the way, so that f is not
+    /// evaluated at t. The state misses this much of time at each jump: let the times of many jumps begin near 0. Methods that
+    /// evaluate f only within a step, such as Magnus methods, miss nothing ([`Facts`](crate::methods::Facts)). Where only
+    /// derivatives of f jump ([`Stops::at_kinks`]), as at the knots of sampled data, no method misses anything.
     ///
     /// The times may be in any order, and also outside the span.
-    pub fn stops(mut self, times: impl Into<Vec<f64>>) -> Self {
+    pub fn stops(mut self, times: impl Into<Stops>) -> Self {
         self.settings.stops = times.into();
         self
     }
@@ -347,7 +348,7 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
     /// [`RunError::Setup`] for wrong arguments.
     pub fn integrator(mut self, y0: PointOf<P>) -> Result<Integrator<'a, P, M>, RunError> {
         let mut run = self.start(y0)?;
-        run.stops = core::mem::take(&mut self.settings.stops);
+        run.stops = core::mem::take(&mut self.settings.ends);
         Ok(run)
     }
 

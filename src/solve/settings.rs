@@ -5,8 +5,9 @@ use std::sync::atomic::AtomicBool;
 use super::control::StepControl;
 use super::drive::{Checkpoints, Drive, Patience};
 use super::events::{EventRule, Events};
-use super::grid::{SaveAt, TimeGrid, in_order, length_of};
+use super::grid::{SaveAt, TimeGrid, length_of};
 use super::output::Keeps;
+use super::stops::{Stop, Stops};
 use super::timeline::{Pace, Timeline};
 use crate::error::Error;
 
@@ -22,7 +23,9 @@ pub(super) struct Settings<'a> {
     pub(super) pace: Option<Pace>,
     pub(super) save: SaveAt,
     pub(super) times_by_steps: bool,
-    pub(super) stops: Vec<f64>,
+    pub(super) stops: Stops,
+    /// The stops within the span, in order. Made when the settings are checked.
+    pub(super) ends: Vec<Stop>,
     pub(super) max_steps: Option<u64>,
     pub(super) cancel: Option<&'a AtomicBool>,
     pub(super) progress: Option<Box<dyn FnMut(f64) + 'a>>,
@@ -41,7 +44,8 @@ impl<'a> Settings<'a> {
             pace: None,
             save: SaveAt::End,
             times_by_steps: false,
-            stops: Vec::new(),
+            stops: Stops::default(),
+            ends: Vec::new(),
             max_steps: None,
             cancel: None,
             progress: None,
@@ -99,7 +103,7 @@ impl<'a> Settings<'a> {
             self.save = SaveAt::count(count, self.t_span)?;
         }
         self.save.check(self.t_span)?;
-        in_order(&mut self.stops, self.t_span)?;
+        self.ends = core::mem::take(&mut self.stops).in_order(self.t_span)?;
         let Some(mut pace) = self.pace.clone() else {
             let expected = "a step size by `dt`, a number of steps by `steps`, or steps chosen by \
                             their error by `tolerances`";
@@ -129,7 +133,7 @@ impl<'a> Settings<'a> {
         times.expect_events(!events.is_empty(), has_zeros);
         let events = Events::new(events, times.facts.order);
         let Settings { save, times_by_steps, cancel, progress, checkpoints, resume, .. } = self;
-        let mut stops = self.stops.into_iter();
+        let mut stops = self.ends.into_iter();
         let (t0, next_stop) = (times.t, stops.next());
         Drive {
             times,

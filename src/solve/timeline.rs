@@ -4,6 +4,7 @@ use super::control::{Controller, StepControl};
 use super::grid::TimeGrid;
 use super::points::{AnyPoints, Place, Saved};
 use super::stats::{Cadence, RunError, Stats};
+use super::stops::Stop;
 use super::streak::{Reach, Run};
 use crate::error::{Error, Failure, StepError};
 use crate::methods::{Facts, MapCounts, Step, StepCost};
@@ -194,25 +195,24 @@ impl Timeline {
     pub(super) fn steps_before(
         &mut self,
         run: &mut dyn Run,
-        (stop, jumps): (f64, bool),
+        mut stop: Stop,
         reach: Reach,
     ) -> Result<(), RunError> {
-        if self.t == stop {
+        if self.t == stop.t {
             return Ok(());
         }
         // Where all stages are within a step, none is at the stop.
-        let jumps = jumps && !self.facts.stages_within;
+        stop.jumps &= !self.facts.stages_within;
         match &mut self.pacer {
-            Pacer::Equal { .. } => self.equal_step(run.points(), stop, jumps),
-            Pacer::ByError(_) => self.chosen_steps(run, (stop, jumps), reach),
+            Pacer::Equal { .. } => self.equal_step(run.points(), stop),
+            Pacer::ByError(_) => self.chosen_steps(run, stop, reach),
         }
     }
 
     fn equal_step(
         &mut self,
         points: &mut dyn AnyPoints,
-        stop: f64,
-        jumps: bool,
+        Stop { t: stop, jumps }: Stop,
     ) -> Result<(), RunError> {
         let Pacer::Equal { grid, done, max_steps } = &mut self.pacer else { return Ok(()) };
         let max_steps = *max_steps;
@@ -228,11 +228,12 @@ impl Timeline {
         }
         let end = grid.time(*done + 1);
         let before = if self.t1 >= self.t { stop < end } else { stop > end };
-        // The last stage may be at t + h, a rounding after the end of the step.
-        let near = jumps && (stop - end).abs() <= 4.0 * f64::EPSILON * stop.abs().max(end.abs());
+        // No step is as short as rounding. And the last stage may be at t + h, a rounding after the end of the step.
+        let rounding = 4.0 * f64::EPSILON * stop.abs().max(end.abs());
+        let near = stop == end || (stop - end).abs() < rounding;
         let before = before || (near && stop != end);
         let n = self.stats.accepted;
-        let (step, end) = match before || near {
+        let (step, end) = match before || (near && jumps) {
             true => (Step { n, t: self.t, h: size_to(self.t, stop, jumps) }, stop),
             false => (Step { n, ..grid.step(*done) }, end),
         };

@@ -11,7 +11,7 @@ use lieflow::methods::commutator_free::CF43;
 use lieflow::methods::tableau::{BS3, DOP853, DOPRI5, RK4};
 use lieflow::methods::{CommutatorFree, Doubling, Rkmk};
 use lieflow::problems::{Fallible, Flow, LinearFlow, RigidBody, TryProblem};
-use lieflow::{LieGroup, RunError, Solve, StepControl, StepError, TimeGrid};
+use lieflow::{LieGroup, RunError, Solve, StepControl, StepError, Stops, TimeGrid};
 use nalgebra::Vector3;
 
 use crate::modes::{Pace, Ran, V, every_mode};
@@ -515,4 +515,46 @@ fn no_time_is_lost_at_stops() {
     let run = Solve::new(&turn, &Magnus8, [t0 + 1.0, t0]).dt(0.02).stops(stops);
     let run = run.run(Matrix3::identity()).expect("a run");
     assert!((angle(&run.y) + 1.0).abs() < 1e-12, "{}", angle(&run.y));
+}
+
+/// No method loses time where only derivatives of f jump, and no step is as short as rounding: a rate by straight lines
+/// between knots that are no numbers of the grid.
+#[test]
+fn no_time_is_lost_at_kinks() {
+    use nalgebra::Matrix3;
+    let (t0, n) = (1e4, 100);
+    let knots: Vec<f64> = (0..=n).map(|k| t0 + 0.01 * f64::from(k)).collect();
+    let times = knots.clone();
+    let turn = Flow::of_time(So3::new(), LeftTranslation, move |t: f64, v: &mut Vector3<f64>| {
+        let k = times.partition_point(|knot| *knot <= t).clamp(1, times.len() - 1);
+        let share = (t - times[k - 1]) / (times[k] - times[k - 1]);
+        v.z = if k % 2 == 1 { share } else { 1.0 - share };
+    });
+    let span = [t0, knots[n as usize]];
+    let exact = 0.5 * (span[1] - span[0]);
+    let error = |stops: Stops, [from, to]: [f64; 2], adaptive: bool| {
+        let method = Rkmk::new(DOPRI5, Exp);
+        let solve = Solve::new(&turn, &method, [from, to]).stops(stops);
+        let solve = if adaptive { solve.tolerances(1e-9, 1e-9) } else { solve.dt(0.01) };
+        let run = solve.run(Matrix3::identity()).expect("a run");
+        let steps = run.stats.accepted;
+        assert!(adaptive || steps == n as u64, "{steps} steps");
+        let angle = run.y[(1, 0)].atan2(run.y[(0, 0)]);
+        (angle.abs() - exact).abs()
+    };
+    for span in [span, [span[1], span[0]]] {
+        for adaptive in [false, true] {
+            let kinks = error(Stops::at_kinks(knots.clone()), span, adaptive);
+            let jumps = error(knots.clone().into(), span, adaptive);
+            assert!(kinks < 3e-11 && jumps > 2e-10, "{span:?} {adaptive}: {kinks:e} {jumps:e}");
+        }
+    }
+    // Of two stops at one time the jump counts, and a time that is no number is named.
+    let both = Stops { jumps: knots.clone(), kinks: knots.clone() };
+    assert!(error(both, span, false) > 2e-10);
+    let bad = Solve::new(&turn, &Rkmk::new(DOPRI5, Exp), span)
+        .dt(0.1)
+        .stops(Stops::at_kinks([f64::NAN]))
+        .run(Matrix3::identity());
+    assert!(bad.expect_err("NaN").to_string().contains("kinks[0]"));
 }

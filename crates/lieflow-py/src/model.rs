@@ -10,7 +10,7 @@ use lieflow_model::formula::Which;
 use lieflow_model::kinds::{KINDS, named};
 use lieflow_model::problem::{
     self, CurvePlace, EventPlan, Kept, KeyInfo, Layer, Orders, Outcome, Plan, StepByStep, Steps,
-    Watcher,
+    Stops, Watcher,
 };
 use lieflow_model::reader::{ReadError, Shape, Tree};
 use lieflow_model::scene::{Columns, OnRows, RowFormula};
@@ -164,8 +164,8 @@ impl Problem {
         let found = self.problem.columns(quantity);
         found.map_err(|error| argument(py, "quantities", error.to_string(), ""))
     }
-    /// The times at which the problem is not smooth.
-    fn knots(&self, py: Python<'_>, t_span: [f64; 2]) -> PyResult<Vec<f64>> {
+    /// The times at which the right-hand side jumps, and those at which only its derivatives do.
+    fn knots(&self, py: Python<'_>, t_span: [f64; 2]) -> PyResult<(Vec<f64>, Vec<f64>)> {
         if let Some(samples) = self.problem.samples() {
             knots(py, samples, t_span)?;
         } else if t_span[1].is_infinite() && self.problem.knots([0.0; 2]).is_some() {
@@ -173,7 +173,8 @@ impl Problem {
             let expected = "a finite end: f jumps again and again";
             return Err(argument(py, "t_span", format!("({start}, {end})"), expected));
         }
-        Ok(self.problem.knots(t_span).unwrap_or_default())
+        let Stops { jumps, kinks } = self.problem.knots(t_span).unwrap_or_default();
+        Ok((jumps, kinks))
     }
     /// The problem with these quantities on a layer. `events` are formulas of its columns, each with its path.
     #[pyo3(signature = (quantities, layer = None, events = vec![]))]
@@ -315,7 +316,7 @@ impl Model {
         let (events, callback, raised, seen) = watch.parts();
         let mut curve = None;
         let plan = Plan {
-            stops: settings.stops.clone(),
+            stops: settings.stops(),
             max_steps: settings.max_steps,
             events: events.iter().map(|event| self.event(event)).collect(),
             cancel: Some(&raised.stop),
@@ -489,7 +490,7 @@ impl Model {
         let start = start.as_ref().map(|start| start.as_slice()).transpose()?;
         let numbers = || self.numbers(&spec, start);
         let steps = settings.steps(py, t_span, (orders, numbers), "Integrator")?;
-        let run = StepByStep { steps, stops: settings.stops, start };
+        let run = StepByStep { steps, stops: settings.stops(), start };
         let run = self.model.stepper(&spec, run);
         Stepper::new(py, run, &[self.width()], (Arc::default(), false))
     }

@@ -8,7 +8,7 @@ use lieflow::catalog::MethodSpec;
 use lieflow::solve::Status;
 use lieflow::{Direction, RunError, SaveAt, Stats, StepControl, TimeGrid};
 use lieflow_model::kinds::own::OwnField;
-use lieflow_model::problem::{Orders, Steps, stop_after_hardest};
+use lieflow_model::problem::{Orders, Steps, Stops, stop_after_hardest};
 use lieflow_model::scene::{beside_fixed_steps, default_tolerances};
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
@@ -72,12 +72,18 @@ pub(crate) struct Settings {
     dt: Option<f64>,
     steps: Option<u64>,
     split: bool,
-    pub(crate) stops: Vec<f64>,
+    stops: Vec<f64>,
+    kinks: Vec<f64>,
     pub(crate) dense_output: bool,
     pub(crate) linear: bool,
 }
 
 impl Settings {
+    /// The times at which a step ends.
+    pub(crate) fn stops(&self) -> Stops {
+        Stops { jumps: self.stops.clone(), kinks: self.kinks.clone() }
+    }
+
     /// The steps. What is left out is that of a scene, for a method of this order from this start; `function` is told of them.
     pub(crate) fn steps(
         &self,

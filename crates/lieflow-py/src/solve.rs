@@ -113,7 +113,7 @@ impl Space {
     ) -> PyResult<Stepper> {
         let raised = Arc::new(Raised::default());
         let ready = Ready::new(py, self, field, method, (t_span, &y0, &settings), &raised)?;
-        let run = ready.problem.stepper(&ready.spec, &y0, (ready.steps, settings.stops));
+        let run = ready.problem.stepper(&ready.spec, &y0, (ready.steps, settings.stops()));
         if let Some(error) = raised.take() {
             return Err(error);
         }
@@ -314,7 +314,7 @@ fn drive(
     let plan = OwnPlan {
         steps: ready.steps.clone(),
         save,
-        stops: settings.stops.clone(),
+        stops: settings.stops(),
         max_steps: settings.max_steps,
         dense: settings.dense_output,
         events: events.collect(),

@@ -13,7 +13,7 @@ use super::entries::{power, rows, symplectic_defect};
 use super::flow::OnMatrices;
 use super::matrix::MatrixAction;
 use super::prelude::*;
-use crate::problem::KNOTS_MAX;
+use crate::problem::{KNOTS_MAX, Stops};
 
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {
@@ -222,7 +222,7 @@ impl System for BeamLine {
         "transfer map in Sp(4)".into()
     }
     /// Where elements end; none over a span without an end.
-    fn knots(&self, [s0, s1]: [f64; 2]) -> Option<Vec<f64>> {
+    fn knots(&self, [s0, s1]: [f64; 2]) -> Option<Stops> {
         let (from, to, length) = (s0.min(s1), s0.max(s1), self.cell_length());
         let cells = if to - from < f64::INFINITY {
             (from / length).floor()..(to / length)
@@ -235,7 +235,7 @@ impl System for BeamLine {
         let ends = starts.flat_map(|cell| self.ends_of(cell)).map(|(end, _)| end);
         // One more than a scene may have, which refuses it.
         let counts = |s: &f64| (from < *s && *s < to) || *s == s1;
-        Some(ends.filter(counts).take(KNOTS_MAX + 1).collect())
+        Some(ends.filter(counts).take(KNOTS_MAX + 1).collect::<Vec<_>>().into())
     }
     fn exact(&self, [s0, s1]: [f64; 2]) -> Option<Result<Mat<f64>, Error>> {
         let both = self.map_to(s0).and_then(|to_start| Ok((to_start, self.map_to(s1)?)));

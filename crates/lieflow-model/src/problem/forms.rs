@@ -5,6 +5,7 @@ use core::fmt::Debug;
 use std::sync::Arc;
 
 use lieflow::catalog::MethodSpec;
+use lieflow::solve::Stops;
 use lieflow::tolerance::Tolerance;
 use lieflow::{Error, RunError};
 
@@ -81,7 +82,7 @@ pub(crate) trait Run: Debug + Send + Sync {
         Vec::new()
     }
     /// See [`Problem::knots`](super::Problem::knots).
-    fn knots(&self, _t_span: [f64; 2]) -> Option<Vec<f64>> {
+    fn knots(&self, _t_span: [f64; 2]) -> Option<Stops> {
         None
     }
     /// See [`Problem::field`](super::Problem::field).

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use lieflow::catalog::{MethodSpec, Needs};
 use lieflow::names::same;
 use lieflow::samples::Samples;
+use lieflow::solve::Stops;
 use lieflow::tolerance::Tolerance;
 use lieflow::{Error, RunError, SaveAt, Stats, StepControl, TimeGrid};
 
@@ -170,7 +171,7 @@ impl Problem {
 
     /// The times within a span at which the right-hand side is not smooth: a step across one loses its order. None
     /// where the kind has no such times.
-    pub fn knots(&self, t_span: [f64; 2]) -> Option<Vec<f64>> {
+    pub fn knots(&self, t_span: [f64; 2]) -> Option<Stops> {
         self.forms.forms[0].run.knots(t_span)
     }
 

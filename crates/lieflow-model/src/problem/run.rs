@@ -15,7 +15,7 @@ use lieflow::solve::{Interpolant, Interrupted, LONG_STEPS, Next, Solution, Statu
 use lieflow::space::Numbers;
 use lieflow::{Action, Direction, Error, Event, RunError, SaveAt, Solve, Stats};
 
-pub use lieflow::solve::Steps;
+pub use lieflow::solve::{Steps, Stops};
 
 use super::following::following;
 use crate::schema::{Branches, Row, Schema};
@@ -111,7 +111,7 @@ pub struct Plan<'a> {
     /// Are output times reached by shorter steps, and not by the continuous extension?
     pub times_by_steps: bool,
     /// Times at which a step ends.
-    pub stops: Vec<f64>,
+    pub stops: Stops,
     /// The events.
     pub events: Vec<EventPlan<'a>>,
     /// The limit of the attempts, where it is not that of the library.
@@ -159,7 +159,7 @@ impl Plan<'_> {
             steps,
             save,
             times_by_steps: false,
-            stops: Vec::new(),
+            stops: Stops::default(),
             events: Vec::new(),
             max_steps: None,
             cancel: None,

@@ -6,7 +6,7 @@ use std::time::Duration;
 use lieflow::catalog::MethodSpec;
 use lieflow::methods::AnyMethod;
 use lieflow::problems::PointOf;
-use lieflow::solve::Integrator;
+use lieflow::solve::{Integrator, Stops};
 use lieflow::space::Numbers;
 use lieflow::{Error, RunError, Solve, Stats};
 
@@ -69,15 +69,15 @@ pub(crate) type PointFrom<Y> = Box<dyn Fn(&[f64], &mut Y) -> Result<(), Error> +
 pub struct StepByStep<'a> {
     /// The steps.
     pub steps: Steps,
-    /// Times at which a step ends, because f jumps there.
-    pub stops: Vec<f64>,
+    /// Times at which a step ends.
+    pub stops: Stops,
     /// The numbers of another point to start from ([`Model::start`](super::Model::start) has their order).
     pub start: Option<&'a [f64]>,
 }
 
 impl From<Steps> for StepByStep<'_> {
     fn from(steps: Steps) -> Self {
-        StepByStep { steps, stops: Vec::new(), start: None }
+        StepByStep { steps, stops: Stops::default(), start: None }
     }
 }
 

@@ -4,6 +4,7 @@ use core::fmt::{self, Debug};
 use std::sync::{Arc, OnceLock};
 
 use lieflow::catalog::MethodSpec;
+use lieflow::solve::Stops;
 use lieflow::space::check_within_reach;
 use lieflow::tolerance::Tolerance;
 use lieflow::{Error, RunError};
@@ -63,8 +64,9 @@ pub(crate) trait System: Clone + Debug + Send + Sync + 'static {
         None
     }
     /// See [`Problem::knots`](super::Problem::knots).
-    fn knots(&self, t_span: [f64; 2]) -> Option<Vec<f64>> {
-        self.formula()?.samples().map(|samples| samples.knots(t_span).collect())
+    fn knots(&self, t_span: [f64; 2]) -> Option<Stops> {
+        let samples = self.formula()?.samples()?;
+        Some(Stops::at_kinks(samples.knots(t_span).collect::<Vec<_>>()))
     }
     /// Checks a state that a run starts from in place of its own, beyond what the group and the action ask for.
     ///
@@ -312,7 +314,7 @@ impl<S: System> Run for On<S> {
     fn check_start(&self, t0: f64) -> Vec<Refusal> {
         self.system.check_start(t0)
     }
-    fn knots(&self, t_span: [f64; 2]) -> Option<Vec<f64>> {
+    fn knots(&self, t_span: [f64; 2]) -> Option<Stops> {
         self.system.knots(t_span)
     }
     fn field(&self, values: &[f64]) -> Vec<Vec<f64>> {

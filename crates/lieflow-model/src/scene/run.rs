@@ -21,6 +21,7 @@ use fnv::FnvHasher;
 use lieflow::StepControl;
 use lieflow::catalog::{MethodSpec, all_methods};
 use lieflow::samples::{Outside, Samples};
+use lieflow::solve::Stops;
 use lieflow::{Error, SaveAt, TimeGrid};
 
 /// A run, stated in full and checked.
@@ -355,7 +356,7 @@ impl Scene {
     }
 
     /// The times at which a step ends: the knots of the problem, where they are asked for.
-    fn knots(&self, t_span: [f64; 2]) -> Vec<f64> {
+    fn knots(&self, t_span: [f64; 2]) -> Stops {
         let knots = self.at_knots.then(|| self.problem.knots(t_span)).flatten();
         knots.unwrap_or_default()
     }

@@ -48,7 +48,7 @@ fn a_stepper_has_the_rows_of_a_run() {
         other.row(&mut values);
         assert_eq!(values, rows, "{name}");
 
-        let stops = StepByStep { stops: vec![0.123], ..steps(1.0).into() };
+        let stops = StepByStep { stops: vec![0.123].into(), ..steps(1.0).into() };
         let mut stopped = model.stepper(&method, stops).unwrap();
         let ends: Vec<f64> = (0..4).map(|_| stopped.step().unwrap()).collect();
         assert!(ends.contains(&0.123), "{name}: {ends:?}");
@@ -98,7 +98,7 @@ fn to_the_end() -> OwnPlan<'static> {
     OwnPlan {
         steps: steps(1.0),
         save: SaveAt::End,
-        stops: Vec::new(),
+        stops: Vec::new().into(),
         max_steps: None,
         dense: false,
         events: Vec::new(),

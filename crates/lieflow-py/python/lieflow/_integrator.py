@@ -81,14 +81,15 @@ class Integrator:
             method = method or problem.method
             start = problem._start(y0, model, method)
             self._split = problem._layout(asked).split
-            settings["stops"] = sorted({*settings["stops"], *problem._problem.knots(span)})
+            jumps, settings["kinks"] = problem._problem.knots(span)
+            settings["stops"] += jumps
             self._run = model.stepper(method, span, start, settings)
         else:
             if quantities is not None:
                 raise ArgumentError("quantities", repr(quantities), "none: only a problem has quantities")
             ready = Ready(problem, y0, args, group, action, frame, linear, span)
             settings["linear"] = ready.linear
-            settings["stops"] = sorted({*settings["stops"], *ready.stops})
+            settings["kinks"] = ready.kinks
             self._split = None if ready.layout is None else ready.layout.split
             self._join = ready.layout
             self._run = ready.space.stepper(

@@ -179,6 +179,7 @@ def settings_of(
         "dt": _positive("dt", dt),
         "steps": _count("steps", steps),
         "split": False,
+        "kinks": [],
         "stops": [] if stops is None or isinstance(stops, tuple) and not stops else np.atleast_1d(real("stops", stops)).tolist(),
         "dense_output": _flag("dense_output", dense_output),
         "linear": _flag("linear", linear),
@@ -196,7 +197,7 @@ def _space(*given: Any) -> _lieflow.Space:
 class Ready:
     """A field of the user on its space, ready to run."""
 
-    __slots__ = ("args", "calls", "field", "flat", "group", "layout", "linear", "parts", "shape", "space", "space_args", "stops")
+    __slots__ = ("args", "calls", "field", "flat", "group", "kinks", "layout", "linear", "parts", "shape", "space", "space_args")
 
     def __init__(
         self, fun: Any, y0: Any, args: tuple[Any, ...], group: Any, action: Any, frame: Any, linear: bool,
@@ -237,7 +238,7 @@ class Ready:
         finite("y0", start)
         self.flat, self.shape = start.ravel().tolist(), start.shape
         self.linear, self.args = bool(linear), list(args)
-        self.stops: list[float] = []
+        self.kinks: list[float] = []
         self.field = self._field(fun, span)
         self.calls = isinstance(self.field, tuple) and callable(self.field[0])
 
@@ -252,14 +253,14 @@ class Ready:
                 expected = "a function; formulas have real values (lf.MatrixOde and lf.Schrodinger have complex ones)"
                 raise ArgumentError("fun", f"formulas for {self.group}", expected)
             formulas = fun.formulas(fun.field, self.shape, tuple(self.space.value))
-            self.stops = formulas.knots(span)
+            self.kinks = formulas.knots(span)
             self.linear = self.linear or self.space.has_linear_methods and not formulas.depends_on_y
             return formulas
         if isinstance(fun, Samples):
             if fun.values.shape[1] != int(np.prod(self.space.value)):
                 expected = f"{int(np.prod(self.space.value))}, a value of f at each time"
                 raise ArgumentError("fun", f"samples of {fun.values.shape[1]} columns", expected)
-            self.stops = fun._sampled.knots(span)
+            self.kinks = fun._sampled.knots(span)
             self.linear = self.linear or self.space.has_linear_methods
             return fun._sampled
         if hasattr(fun, "argtypes") and hasattr(fun, "restype") or type(fun).__name__ == "LowLevelCallable":
@@ -459,8 +460,7 @@ def _of_field(
     ready = Ready(fun, y0, *space, settings["linear"], span)
     if ready.linear != settings["linear"]:
         settings = {**settings, "linear": ready.linear}
-    if ready.stops:
-        settings = {**settings, "stops": sorted({*settings["stops"], *ready.stops})}
+    settings = {**settings, "kinks": ready.kinks}
     parts = [ready.event(i, event, fun) for i, event in enumerate(events)]
     told = callback
     if callback is not None and ready.layout is not None:
@@ -493,16 +493,21 @@ def _of_field(
 
         return _second(run, settings, result, span[0], seconds)
 
-    return Result(sol=sol, _layout=ready.layout, _again=again, **found)
+    return Result(sol=sol, _layout=ready.layout, _again=again, _changes=_changes(events), **found)
+
+
+def _changes(events: list[Event]) -> list[int]:
+    """Return the numbers of the events that change the state."""
+    return [i for i, event in enumerate(events) if event.change]
 
 
 def _beyond(first: Result, span: tuple[float, float], events: list[Event]) -> tuple[float, list[Event]]:
     """Return the end and the events of a second run. The zero that ended the first may be earlier or later there."""
-    if first.status == 0 or any(event.change for event in events):
+    if first.status == 0:
         return span[1], events
     low, high = min(span), max(span)
     end = first.t_end + (first.largest_step if span[1] > span[0] else -first.largest_step)
-    on = [Event(event.g, 0, event.direction, None, event.points, event.name) for event in events]
+    on = [Event(event.g, 0, event.direction, event.change, event.points, event.name) for event in events]
     return min(max(end, low), high), on
 
 
@@ -576,9 +581,8 @@ def _of_problem(
         change = None if event.change is None else _of_state(event.change, problem._complex_state(), args, i)
         parts.append((g, f"events[{i}] ({event.name})", event.direction, event.terminal, change, event.points))
     told = None if callback is None else _of_rows(callback, layout, ())
-    knots = problem._problem.knots(span)
-    if knots:
-        settings = {**settings, "stops": sorted({*settings["stops"], *knots})}
+    jumps, kinks = problem._problem.knots(span)
+    settings = {**settings, "stops": [*settings["stops"], *jumps], "kinks": kinks}
     start = problem._start(y0, model, method)
     clock = thread_time()
     found = model.solve(method, span, start, settings, times, parts, told)
@@ -622,7 +626,9 @@ def _of_problem(
         row = rows[0] if is_start else model.stepper(method, span, start, settings).row()
         return layout.split(row[None], every=True)
 
-    return Result(sol=sol, _rows=rows, _first=first, _layout=layout, _again=again, **found)
+    return Result(
+        sol=sol, _rows=rows, _first=first, _layout=layout, _again=again, _changes=_changes(events), **found
+    )
 
 
 def _of_rows(g: Callable[..., Any], layout: Layout, args: tuple[Any, ...]) -> Callable[..., Any]:

@@ -327,7 +327,7 @@ impl<'a> Check<'a> {
             false => self.scene().plan_to(t, factor, largest),
         };
         let mut plan = plan.map_err(|error| error.to_string())?;
-        plan.stops.extend(self.own.hardest);
+        plan.stops.kinks.extend(self.own.hardest);
         if let (true, Steps::Equal(grid)) = (split, &mut plan.steps) {
             *grid = grid.split();
         }

@@ -8,7 +8,7 @@ use lieflow::catalog::{MethodSpec, MethodsByName};
 use lieflow::groups::LieGroup;
 use lieflow::methods::{AnyMethod, Method};
 use lieflow::problems::{AlgOf, DynFlow, Flow, PointOf, Problem, TimeAlone, WithHamiltonian};
-use lieflow::solve::{Interpolant, Interrupted, Next, Solution, Status};
+use lieflow::solve::{Interpolant, Interrupted, Next, Solution, Status, Stops};
 use lieflow::space::Numbers;
 use lieflow::{Action, Direction, Error, Event, RunError, SaveAt, Solve, Stats};
 
@@ -54,7 +54,7 @@ pub struct OwnPlan<'a> {
     /// The rows of the output.
     pub save: SaveAt,
     /// Times at which a step ends.
-    pub stops: Vec<f64>,
+    pub stops: Stops,
     /// The limit of the attempts, if it is not that of the library.
     pub max_steps: Option<u64>,
     /// True if the points at all times are kept.
@@ -132,7 +132,7 @@ pub trait Run: Send + Sync {
         &self,
         method: &MethodSpec,
         y0: &[f64],
-        steps: (Steps, Vec<f64>),
+        steps: (Steps, Stops),
     ) -> Result<Box<dyn Stepper>, RunError>;
     /// As [`Own::curve`](super::Own::curve).
     ///
@@ -402,7 +402,7 @@ where
         &self,
         method: &MethodSpec,
         y0: &[f64],
-        steps: (Steps, Vec<f64>),
+        steps: (Steps, Stops),
     ) -> Result<Box<dyn Stepper>, RunError> {
         let (layout, problem) = (self.layout, self.problem.clone());
         let [size, _] = layout.sizes(problem.group());
