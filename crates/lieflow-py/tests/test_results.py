@@ -159,3 +159,54 @@ def test_a_stop_is_one_step_more():
     for options in ({"steps": 4}, {"dt": 0.25}):
         r = lf.solve_ivp(turn, (0, 1), np.eye(3), method="rkmk4 exp", stops=[0.33], **options, **ROTATION)
         assert np.allclose(r.t, [0, 0.25, 0.33, 0.58, 0.83, 1.0], atol=1e-14) and r.nsteps == 5
+
+
+def _swings(**keys):
+    """A run about one axis, with its error at each row."""
+    angle = lambda t: t + 0.7 / 3 * (1 - np.cos(3 * t))  # noqa: E731
+    r = lf.solve_ivp(lambda t, y: [0, 0, 1 + 0.7 * np.sin(3 * t)], (0, 20), [1, 0, 0], group="SO(3)", action="linear", **keys)
+    exact = np.stack([np.cos(angle(r.t)), np.sin(angle(r.t)), 0 * r.t], 1)
+    return r, np.linalg.norm(r.y - exact, axis=1)
+
+
+@pytest.mark.parametrize("steps", [{"steps": 40}, {"rtol": 1e-8, "method": "rkmk dopri5"}])
+def test_rows_at_events_have_an_error(steps):
+    keys = {"method": "rkmk4 cay", **steps}
+    r, true = _swings(t_eval=[0, 10.0], events=lambda t, y: t - 10, **keys)
+    assert true[1] / 3 < r.estimate_error().y < 3 * true[1]
+    r, true = _swings(events=lf.Event(lambda t, y: t - 1.5, terminal=1), **keys)
+    assert r.status == 1 and true[-1] / 3 < r.estimate_error().y < 3 * true.max()
+
+
+@pytest.mark.parametrize("steps", [{"steps": n} for n in (30, 40, 50, 60, 80)] + [{"rtol": 1e-8, "atol": 1e-8}])
+def test_a_ball_that_bounces_until_it_has_bounced_enough_has_an_error(steps):
+    ball = lf.Parts(x="number", v="number")
+    bounce = lf.Event(lambda t, y: y.x, direction=-1, change=lambda t, y: {"x": 0.0, "v": -0.8 * y.v}, terminal=3)
+
+    def fall(t, y):
+        return {"x": y.v, "v": -9.81 - 0.1 * y.v * abs(y.v)}
+
+    keys = {"group": ball, "events": bounce}
+    method = {"method": "rkmk4 exp"} if "steps" in steps else {}
+    r = lf.solve_ivp(fall, (0, 9), {"x": 2.0, "v": 0.0}, **keys, **method, **steps)
+    fine = lf.solve_ivp(fall, (0, 9), {"x": 2.0, "v": 0.0}, **keys)
+    true = np.abs(r.t_events[0] - fine.t_events[0]).max()
+    stated = r.estimate_error().t_events[0]
+    assert len(r.t_events[0]) == 3 and true < 4 * stated + 1e-12 and stated < 4 * true + 1e-6
+
+
+@pytest.mark.parametrize("t", [-20.0, -10.0, -5.0, -1.0, 1.0, 5.0, 20.0, 300.0])
+def test_a_subspace_is_exact_forward_and_backward(t):
+    import mpmath
+
+    a = 2.0 * np.array([[2, 1, 0, 0], [1, 0, 1, 0], [0, 1, -1, 1], [0, 0, 1, -2]])
+    for x in ([[1, 0], [0, 1], [1, 1], [0, 1]], [[1, 0], [1, 1], [1, 2], [1, -1]], [[0, 0], [0, 0], [1, 0], [0, 1]]):
+        with mpmath.workdps(1500):
+            values, q = mpmath.eigsy(mpmath.matrix(a.tolist()))
+            y = q * mpmath.diag([mpmath.exp(t * value) for value in values]) * q.T * mpmath.matrix(x)
+            p = y * (y.T * y) ** -1 * y.T
+            right = [float(p[i, j]) for i in range(4) for j in range(i, 4)]
+        problem = lf.Subspace(a=a, x=x)
+        assert np.abs(problem.exact([t]).projector[0] - right).max() < 1e-13
+        run = lf.solve_ivp(problem, (0, t), t_eval=[t])
+        assert np.abs(run.projector[0] - right).max() < 1e-12

@@ -328,8 +328,9 @@ class Result:
         if again is None:
             raise RunError("the run cannot be repeated: this is a copy of the result without f")
         found_by, other = again(self)
-        # An event may have changed the state: then a row at the end of a step has the new one, and another row the old one.
-        rows = ~np.isin(self.t, np.concatenate([*self.t_events, []]))
+        # Where an event changes the state, a row at the end of a step has the new one, and another row the old one.
+        changes = [self.t_events[i] for i in self._changes]
+        rows = ~np.isin(self.t, np.concatenate([*changes, []]))
         rows = rows if rows.any() else np.ones_like(rows)
         if isinstance(self.y, Quantities):
             y: Any = {name: _distance(x[rows], other.y[name][rows]) for name, x in self.y.items()}
