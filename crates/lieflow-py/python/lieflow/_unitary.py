@@ -188,7 +188,7 @@ class Unitary:
         return np.asarray(expm((a - _adjoint(a)) / 2, structure="skew", out=out))
 
     def log(self, g: ArrayLike, out: Complex | None = None) -> Complex:
-        """Return the principal logarithm, with eigenvalues i(−π, π]."""
+        """Return the principal logarithm, with eigenvalues in i[−π, π]: that of a single −1 is iπ or −iπ."""
         x = self._real.log(_on_both_sides(self._element("g", g)))
         n = self._n
         off = np.abs(x[..., :n, :n] - x[..., n:, n:]) + np.abs(x[..., n:, :n] + x[..., :n, n:])
