@@ -27,8 +27,7 @@ impl Check<'_> {
     ) -> Option<String> {
         let worst = accuracy.worst()?;
         let Distance { relative, degrees, .. } = worst.largest;
-        let is_told = accuracy.found_by == FoundBy::ShortSteps;
-        if relative <= POOR || is_told {
+        if relative <= POOR || accuracy.found_by == FoundBy::ShortSteps {
             return None;
         }
         let off = match degrees {

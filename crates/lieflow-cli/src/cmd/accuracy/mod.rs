@@ -32,7 +32,7 @@ const MISJUDGED: f64 = 3.0;
 /// The CPU time of a run below this many seconds says little of that of another. Then a run in short steps is begun in any
 /// case, and ends at its deadline.
 const BRIEF: f64 = 0.015;
-/// A third run that ends this many estimated errors away has found something that two runs did not see.
+/// A run in short steps that ends this many estimated errors of the end away has found something that two runs did not see.
 const PASSED_OVER: f64 = 30.0;
 /// A motion that makes this of the last digits of its start is worth a warning.
 const AMPLIFIED: f64 = 1e-8;
