@@ -354,7 +354,7 @@ impl Drive<'_> {
         let Step { t: start, h, .. } = self.times.last;
         let rounding = 4.0 * f64::EPSILON * start.abs().max((start + h).abs());
         let found = self.events.found.get(self.zeros_done..).unwrap_or_default();
-        found.iter().take_while(|zero| (zero.t - t).abs() <= rounding).count()
+        found.iter().take_while(|zero| zero.t == t || (zero.t - t).abs() <= rounding).count()
     }
 
     /// Handles a zero of an event, and all others at the same time.

@@ -16,8 +16,7 @@
 //! loses all its digits.
 //!
 //! These formulas set up an orbit, and evaluate it near the separatrix (1 − k² < 0.013) and for large n. Elsewhere sn, cn, dn
-//! and the
-//! periodic part of φ come from [`Theta`], which is five times as fast.
+//! and the periodic part of φ come from [`Theta`], which is five times as fast.
 //!
 //! Source: notes on E. T. Whittaker, Analytical Dynamics, § 69; B. C. Carlson's integrals.
 
