@@ -53,7 +53,7 @@ pub trait Embedded<P: Problem>: Method<P> {
 ///
 /// A part that begins at 0 has no tolerance at y, where atol is 0. Then that of z counts.
 #[inline]
-pub(super) fn ratio_in_algebra<P: Problem>(
+pub(crate) fn ratio_in_algebra<P: Problem>(
     problem: &P,
     tolerance: &Tolerance,
     e: &AlgOf<P>,

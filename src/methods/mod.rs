@@ -47,6 +47,7 @@ pub use composition::{
 pub use dmv::{DMV2, DMV4, DMV6, DMV8, DMV10, Dmv};
 pub use doubling::Doubling;
 pub use embedded::Embedded;
+pub(crate) use embedded::ratio_in_algebra;
 pub use energy_casimir::EnergyCasimir;
 pub use exact::ExactMotion;
 pub use facts::{Facts, StepCost};

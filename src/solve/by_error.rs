@@ -7,7 +7,7 @@ use super::points::AnyPoints;
 use super::stats::{RunError, Stats};
 use super::stops::Stop;
 use super::streak::{Reach, Run};
-use super::timeline::{Chooser, Pacer, Timeline, size_to};
+use super::timeline::{Chooser, Pacer, Timeline};
 use crate::error::StepError;
 use crate::methods::{Attempts, Resize, Step, Streak};
 
@@ -103,6 +103,8 @@ impl Timeline {
             h = h.max(min_step);
             if in_a_row == 0 && !self.is_exact() {
                 self.see_turns(run.points(), h);
+                let size = self.propose(h, stop).1;
+                self.see_noise_again(run.points(), size);
             }
             let (end, size) = self.propose(h, stop);
             if self.stats.accepted + self.stats.rejected >= max_steps {
@@ -111,8 +113,7 @@ impl Timeline {
             if end == self.t {
                 return Err(self.underflow(h, None));
             }
-            let h_to_end = size_to(self.t, end, jumps && end == stop);
-            let step = Step { n: self.stats.accepted, t: self.t, h: h_to_end };
+            let step = self.step_to(end, end - self.t, jumps && end == stop);
             let Pacer::ByError(chooser) = &self.pacer else { return Ok(()) };
             let sizes = Sizes::new(chooser, stop, self.largest_size(1.0));
             let streak = self.streak(chooser, (h, end), reach, &sizes);
@@ -126,7 +127,10 @@ impl Timeline {
                 size = (tried.end - self.t).abs();
             }
             let Attempts { step, end, ratio, .. } = tried;
-            match ratio {
+            if ratio.as_ref().is_ok_and(|ratio| self.is_noise(run.points(), *ratio, size)) {
+                continue; // the same attempt: its end is lost
+            }
+            match ratio.map(|ratio| self.beyond_noise(ratio, size)) {
                 Ok(ratio) if ratio <= 1.0 => {
                     let forward = self.t1 > self.t;
                     run.points().accept();
@@ -207,7 +211,7 @@ impl Timeline {
     /// The streak that an attempt of size h, which ends at `end`, may begin.
     fn streak<'a>(
         &self,
-        Chooser { controller, control, wall, .. }: &Chooser,
+        Chooser { controller, control, wall, noise, .. }: &Chooser,
         (h, end): (f64, f64),
         Reach { steps, time }: Reach,
         sizes: &'a Sizes,
@@ -215,7 +219,8 @@ impl Timeline {
         let stop = sizes.stop;
         let size = h.copysign(stop - self.t);
         let is_free = (stop - self.t).abs() >= 2.0 * h && end == self.t + size;
-        let is_alone = controller.hold || controller.is_exact() || wall.is_some();
+        let is_alone =
+            controller.hold || controller.is_exact() || wall.is_some() || noise.per_size > 0.0;
         if !is_free || is_alone || self.is_long(h) {
             return Streak::ONE;
         }
@@ -223,6 +228,7 @@ impl Timeline {
         let most = steps.min(self.cadence.next).saturating_sub(accepted);
         let most =
             self.turns.as_ref().map_or(most, |turns| most.min(turns.next.saturating_sub(accepted)));
+        let most = most.min(noise.next.saturating_sub(accepted));
         let most = most.min(control.max_steps - accepted - rejected).max(1);
         Streak { most, size, kept: controller.kept, stop, time, resize: Some(sizes) }
     }

@@ -131,7 +131,7 @@ const GROWTH_MAX: f64 = 5.0;
 /// A step grows by this power of the factor that its error allows.
 const GROWTH_POWER: f64 = 0.7;
 /// The size of the next step, in units of the largest size that the tolerance allows.
-const GOAL: f64 = 0.7;
+pub(super) const GOAL: f64 = 0.7;
 /// The step size is kept between these, in the same units.
 const KEPT: [f64; 2] = [0.6, 0.85];
 /// The largest factor of an attempt after a rejected one.
@@ -146,6 +146,11 @@ impl Controller {
     /// The controller at a start: it knows no step.
     pub(super) fn anew(self) -> Self {
         Controller { hold: false, ..self }
+    }
+
+    /// The order of the estimate + 1.
+    pub(super) fn k(&self) -> f64 {
+        self.k
     }
 
     /// True if steps of any size have no error.

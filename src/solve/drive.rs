@@ -196,7 +196,9 @@ impl Drive<'_> {
 
     /// Sets the next stop to the first one ahead. A step that an event cut has not reached its stop.
     fn pass_stops(&mut self) {
-        while self.next_stop.is_some_and(|stop| !self.times.is_before(self.times.t, stop.t)) {
+        let passed = |times: &Timeline, stop: &Stop| !times.is_before(times.t, stop.t);
+        while let Some(stop) = self.next_stop.filter(|stop| passed(&self.times, stop)) {
+            self.times.pass(stop);
             self.next_stop = self.stops.next();
         }
     }

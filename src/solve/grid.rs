@@ -182,13 +182,18 @@ impl TimeGrid {
         let whole = self.whole(n);
         let size = match whole + 1 < self.steps || divides {
             true => self.h,
-            false => self.t1 - (self.t0 + whole as f64 * self.h),
+            false => self.t1 - self.t0 - whole as f64 * self.h,
         };
         if !self.split {
             return size;
         }
         let first = SPLITS[(whole % SPLITS.len() as u64) as usize] * size;
         if self.is_second(n) { size - first } else { first }
+    }
+    /// The size of a step from the time after n steps to this time. Its end is exact where that start is rounded.
+    pub(super) fn size_to(&self, n: u64, time: f64) -> f64 {
+        let first = if self.is_second(n) { self.size(n - 1) } else { 0.0 };
+        time - self.t0 - self.whole(n) as f64 * self.h - first
     }
     /// The steps `first..end`, of which all have the same size.
     pub(super) fn equal(&self, first: u64, end: u64) -> EqualSteps {

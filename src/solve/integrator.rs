@@ -130,13 +130,22 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
     /// Takes steps of one call of the method, at most to t, and to this number of steps of the run.
     fn steps_to(&mut self, t: f64, steps: u64) -> Result<(), RunError> {
         let (stop, reach) = (self.stop(t), Reach { steps, time: None });
-        self.times.steps_before(&mut Alone(&mut self.points), stop, reach)
+        self.times.steps_before(&mut Alone(&mut self.points), stop, reach)?;
+        if self.times.t == t {
+            // The caller may change f now.
+            self.times.jumped_at = t;
+        }
+        Ok(())
     }
 
-    /// The next stop; `end` if that is before it.
-    fn stop(&self, end: f64) -> Stop {
+    /// Passes the stops up to the time. Returns the next stop; `end` if that is before it.
+    fn stop(&mut self, end: f64) -> Stop {
         let passed = |stop: &Stop| !self.times.is_before(self.times.t, stop.t);
-        let next = self.stops.get(self.stops.partition_point(passed)).copied();
+        let (passed, ahead) = self.stops.split_at(self.stops.partition_point(passed));
+        if let Some(stop) = passed.last() {
+            self.times.pass(*stop);
+        }
+        let next = ahead.first().copied();
         let next = next.filter(|stop| !self.times.is_before(end, stop.t));
         next.unwrap_or(Stop { t: end, jumps: false })
     }

@@ -26,6 +26,7 @@ mod grid;
 mod held;
 mod integrator;
 mod interpolant;
+mod noise;
 mod operations;
 mod output;
 mod points;
@@ -251,10 +252,11 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
     /// Lets a step end at each of these times, where f or one of its derivatives jumps.
     ///
     /// Where f jumps, f(t) is the value after the jump, in the direction of the run: in a run backward it is the value at
-    /// earlier times. The next step evaluates f at t. The step that ends there is 4 ε|t| shorter than the way, so that f is not
-    /// evaluated at t. The state misses this much of time at each jump: let the times of many jumps begin near 0. Methods that
-    /// evaluate f only within a step, such as Magnus methods, miss nothing ([`Facts`](crate::methods::Facts)). Where only
-    /// derivatives of f jump ([`Stops::at_kinks`]), as at the knots of sampled data, no method misses anything.
+    /// earlier times. The next step evaluates f at t. The stages of the step that ends there are 4 ε|t| earlier than otherwise, so
+    /// that f is not evaluated at t. A step from one jump to the next has no such room: it is ε|t| shorter than the way, unless all
+    /// stages are within a step, as those of Magnus methods ([`Facts`](crate::methods::Facts)). At times of a clock let steps
+    /// be shorter than the time between jumps. Where only derivatives of f jump ([`Stops::at_kinks`]), as at the knots of
+    /// sampled data, nothing is changed.
     ///
     /// The times may be in any order, and also outside the span.
     pub fn stops(mut self, times: impl Into<Stops>) -> Self {

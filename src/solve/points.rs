@@ -12,6 +12,7 @@ use crate::error::{Error, StepError};
 use crate::groups::{LieAlgebra, OFF_M_MAX};
 use crate::methods::{
     Attempt, Attempts, Embedded, EqualSteps, Facts, Method, Step, Streak, Watch, Within,
+    ratio_in_algebra,
 };
 use crate::problems::{AlgOf, PointOf, Problem, ScalarOf};
 use crate::scalar::{Real, smaller};
@@ -61,6 +62,8 @@ pub(super) trait AnyPoints {
     fn rate(&mut self, t: f64) -> f64;
     /// How fast f(t, to) − f moves `to`, with the stored f.
     fn change_of_rate(&mut self, t: f64) -> f64;
+    /// h times the error of f that the rounding of t makes in a step of size h from (t, y), in units of the tolerance.
+    fn noise_of_time(&mut self, t: f64, h: f64) -> f64;
     /// A power of two above the rate at which f(t, y) turns y, or 0 if that is not finite. It is computed for steps of one
     /// size, too.
     fn turn_rate(&mut self, t: f64) -> f64;
@@ -90,11 +93,15 @@ pub(super) trait AnyPoints {
 /// See [`Embedded::attempt`].
 type AttemptOf<P, M> = for<'a> fn(&M, &P, Attempt<'a, P>, &mut <M as Method<P>>::Work) -> Attempts;
 
+/// The ratio of an error in 𝔤 of a step from a point to the tolerance. The last argument is the length of the step.
+type RatioOf<P> = fn(&P, &AlgOf<P>, &PointOf<P>, &Tolerance, ScalarOf<P>) -> f64;
+
 /// What an adaptive run needs from its method.
 pub(super) struct Estimator<P: Problem, M: Method<P>> {
     attempt: AttemptOf<P, M>,
     /// How fast v moves y.
     rate: fn(&P, &AlgOf<P>, &PointOf<P>, Rule) -> f64,
+    ratio: RatioOf<P>,
 }
 
 impl<P: Problem, M: Method<P>> Clone for Estimator<P, M> {
@@ -120,7 +127,10 @@ where
                 }
             }
         };
-        Estimator { attempt: M::attempt, rate }
+        let ratio = |problem: &P, e: &AlgOf<P>, y: &PointOf<P>, tolerance: &Tolerance, length| {
+            ratio_in_algebra(problem, tolerance, e, [y, y], length).into()
+        };
+        Estimator { attempt: M::attempt, rate, ratio }
     }
 }
 
@@ -423,6 +433,22 @@ impl<P: Problem, M: Method<P>> AnyPoints for Points<'_, P, M> {
             problem.f(ScalarOf::<P>::lit(t), to, v, field);
             problem.group().axpy(ScalarOf::<P>::lit(-1.0), f, v);
             (estimator.rate)(problem, v, to, tolerance.rule())
+        })
+    }
+    fn noise_of_time(&mut self, t: f64, h: f64) -> f64 {
+        let Points { problem, y, rates, v, field, .. } = self;
+        let problem = &**problem;
+        let group = problem.group();
+        rates.as_mut().map_or(0.0, |Rates { estimator, tolerance, f, .. }| {
+            problem.f(ScalarOf::<P>::lit(t), y, f, field);
+            let length = ScalarOf::<P>::lit(h.abs()) * group.norm(f);
+            // The change over half the step: f may jump at its end.
+            problem.f(ScalarOf::<P>::lit(t + 0.5 * h), y, v, field);
+            group.axpy(ScalarOf::<P>::lit(-1.0), f, v);
+            // h·(ε/2)|t|·∂f/∂t
+            group.set_zero(f);
+            group.axpy(ScalarOf::<P>::lit(f64::EPSILON * t.abs()), v, f);
+            (estimator.ratio)(problem, f, y, tolerance, length)
         })
     }
     fn turn_rate(&mut self, t: f64) -> f64 {

@@ -23,7 +23,7 @@ use crate::problems::{PointOf, Problem};
 use crate::space::Numbers;
 
 /// The name of the format, and its version.
-const HEADER: [u8; 8] = *b"lieflow\x04";
+const HEADER: [u8; 8] = *b"lieflow\x05";
 
 /// The largest number of values of a list.
 const LIST_MAX: u64 = 1 << 24;
@@ -149,6 +149,7 @@ impl Timeline {
     fn each_word(&mut self, points: &mut dyn AnyPoints, each: &mut Each<'_>) {
         number(each, &mut self.t);
         number(each, &mut self.t1);
+        number(each, &mut self.jumped_at);
         points.each_number(Saved::State, &mut |x| number(each, x));
         points.each_number(Saved::Start, &mut |x| number(each, x));
         each(&mut self.last.n);
@@ -187,6 +188,8 @@ impl Timeline {
                 flag(each, &mut chooser.controller.hold);
                 option(each, &mut chooser.h, number);
                 option(each, &mut chooser.wall, number);
+                number(each, &mut chooser.noise.per_size);
+                each(&mut chooser.noise.next);
             }
         }
         if let Some(Turns { radian, next }) = &mut self.turns {

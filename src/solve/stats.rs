@@ -152,7 +152,7 @@ pub enum RunError {
         "{max_steps} attempts did not reach the end: t = {}, last step h = {} ({accepted} accepted, {rejected} rejected){}",
         Plain(.t),
         Plain(.h),
-        still_to_take(*left, *t, *h)
+        still_to_take(*left, *h)
     )]
     TooManySteps {
         /// The time of the last accepted point.
@@ -213,7 +213,7 @@ pub enum RunError {
 debug_is_display!(RunError);
 
 /// The number of steps of the last size to the end, with one digit, and what to do.
-fn still_to_take(left: f64, t: f64, h: f64) -> String {
+fn still_to_take(left: f64, h: f64) -> String {
     if left == f64::INFINITY {
         return "; the span has no end, and no event ended the run: give t_span an end, or look at the function and the \
                 direction of the event"
@@ -225,12 +225,7 @@ fn still_to_take(left: f64, t: f64, h: f64) -> String {
         true => format!(", the rest is about {about} steps of this size"),
         false => String::new(),
     };
-    // So much of a step is rounding that f looks rough.
-    let near_0 = match f64::EPSILON * t.abs() > 1e-6 * h.abs() {
-        true => ", or let the times begin near 0: the steps are short beside the rounding of t",
-        false => "",
-    };
-    format!("{rest}; raise max_steps or the tolerances{near_0}")
+    format!("{rest}; raise max_steps or the tolerances")
 }
 
 fn reason(source: &Option<StepError>, is_lost: bool) -> String {

@@ -2,6 +2,7 @@
 
 use super::control::{Controller, StepControl};
 use super::grid::TimeGrid;
+use super::noise::Noise;
 use super::points::{AnyPoints, Place, Saved};
 use super::stats::{Cadence, RunError, Stats};
 use super::stops::Stop;
@@ -37,6 +38,8 @@ pub(super) struct Chooser {
     pub(super) wall: Option<f64>,
     /// True if the run has events. Exact steps are then short enough to show them.
     pub(super) has_events: bool,
+    /// What the rounding of t makes of a step.
+    pub(super) noise: Noise,
 }
 
 /// How fast the state turns. Steps that turn it by more than a radian are searched for all zeros of events.
@@ -71,6 +74,8 @@ pub(super) enum Looked {
 pub(super) struct Timeline {
     pub(super) t: f64,
     pub(super) t1: f64,
+    /// The last time at which f may jump: the start, a stop, or a time at which the caller could change it.
+    pub(super) jumped_at: f64,
     /// The last step.
     pub(super) last: Step<f64>,
     pub(super) looked_at: Looked,
@@ -82,11 +87,13 @@ pub(super) struct Timeline {
     pub(super) facts: Facts,
 }
 
-/// The size of a step from t to `end`, or to a few rounding units before it.
-pub(super) fn size_to(t: f64, end: f64, before: bool) -> f64 {
+/// The stages of a step to a jump of f are so many rounding units of time before it.
+const MARGIN: f64 = 4.0;
+
+/// A rounding unit of time, in the direction from t to `end`; 0 where a step between them is almost as short as that.
+fn unit(t: f64, end: f64) -> f64 {
     let unit = f64::EPSILON * t.abs().max(end.abs());
-    let size = end - t;
-    if before && size.abs() > 100.0 * unit { size - (4.0 * unit).copysign(size) } else { size }
+    if (end - t).abs() > 100.0 * unit { unit.copysign(end - t) } else { 0.0 }
 }
 
 /// n + more, if both are counted.
@@ -107,7 +114,8 @@ impl Timeline {
             Pace::ByError(control) => {
                 let controller = Controller::new(error_order.unwrap_or(facts.order));
                 let (h, wall, has_events) = (None, None, false);
-                Pacer::ByError(Chooser { control, controller, h, wall, has_events })
+                let noise = Noise::default();
+                Pacer::ByError(Chooser { control, controller, h, wall, has_events, noise })
             }
         };
         let cadence = Cadence::new(facts.stays_on_manifold);
@@ -119,7 +127,7 @@ impl Timeline {
         };
         let last = Step { n: 0, t: t0, h: 0.0 };
         let (looked_at, turns) = (Looked::Nothing, None);
-        Timeline { t: t0, t1, last, looked_at, pacer, turns, cadence, stats, facts }
+        Timeline { t: t0, t1, jumped_at: t0, last, looked_at, pacer, turns, cadence, stats, facts }
     }
 
     /// Lets exact steps be short enough to show events, and tells long steps to the search for their zeros.
@@ -171,13 +179,22 @@ impl Timeline {
     pub(super) fn changed(&mut self, by: &str, done: Result<(), Error>) -> Result<(), RunError> {
         done.map_err(|source| RunError::Changed { by: by.into(), t: self.t, source })?;
         self.looked_at = Looked::Nothing;
+        self.jumped_at = self.t;
         self.turns.iter_mut().for_each(|turns| turns.next = 0);
         if let Pacer::ByError(chooser) = &mut self.pacer {
             chooser.h = None;
             chooser.wall = None;
             chooser.controller = chooser.controller.anew();
+            chooser.noise = Noise::default();
         }
         Ok(())
+    }
+
+    /// Notes a stop that the run has reached.
+    pub(super) fn pass(&mut self, stop: Stop) {
+        if stop.jumps && stop.t == self.t {
+            self.jumped_at = stop.t;
+        }
     }
 
     /// Checks that a run can go on to t.
@@ -209,6 +226,22 @@ impl Timeline {
         }
     }
 
+    /// The step to `end`, of size h. If f jumps there, no stage is at `end`.
+    ///
+    /// Then the step has its whole size, and begins a few rounding units before t. If f may jump at t, too, it begins at
+    /// t and is shorter by a rounding unit.
+    pub(super) fn step_to(&self, end: f64, mut h: f64, jumps: bool) -> Step<f64> {
+        let (n, t) = (self.stats.accepted, self.t);
+        let unit = if jumps { unit(t, end) } else { 0.0 };
+        if t != self.jumped_at {
+            return Step { n, t: t - MARGIN * unit, h };
+        }
+        while unit != 0.0 && t + h == end {
+            h -= 0.5 * unit;
+        }
+        Step { n, t, h }
+    }
+
     fn equal_step(
         &mut self,
         points: &mut dyn AnyPoints,
@@ -233,11 +266,12 @@ impl Timeline {
         let near = stop == end || (stop - end).abs() < rounding;
         let before = before || (near && stop != end);
         let n = self.stats.accepted;
-        let (step, end) = match before || (near && jumps) {
-            true => (Step { n, t: self.t, h: size_to(self.t, stop, jumps) }, stop),
-            false => (Step { n, ..grid.step(*done) }, end),
-        };
+        let (grid, first) = (*grid, *done);
         *done += u64::from(!before);
+        let (step, end) = match before || (near && jumps) {
+            true => (self.step_to(stop, grid.size_to(first, stop), jumps), stop),
+            false => (Step { n, ..grid.step(first) }, end),
+        };
         self.see_turns(points, step.h);
         if let Err(source) = points.step(step) {
             self.looked_at = Looked::Nothing;
@@ -272,7 +306,7 @@ impl Timeline {
 
     /// Checks that f, just before the end of the last step, is in 𝔤.
     fn check_field(&mut self, points: &mut dyn AnyPoints) -> Result<(), RunError> {
-        let t = self.last.t + size_to(self.last.t, self.t, true);
+        let t = self.t - MARGIN * unit(self.last.t, self.t);
         let checked = points.check_field(t, self.stats.largest_step, &mut self.stats);
         checked.map_err(|source| RunError::LeftManifold { t: self.t, source })
     }

@@ -1,5 +1,6 @@
 //! The driver: output, events, stops, tolerances, and whatever may go wrong in a run.
 
+mod clock;
 mod controller;
 mod events;
 mod hard_cases;

@@ -1,0 +1,108 @@
+//! Times of a clock: t is large beside the steps.
+
+use core::f64::consts::TAU;
+
+use lieflow::actions::LeftTranslation;
+use lieflow::groups::So3;
+use lieflow::maps::Exp;
+use lieflow::methods::magnus::Magnus4;
+use lieflow::methods::tableau::{DOP853, DOPRI5};
+use lieflow::methods::{Doubling, Rk, Rkmk};
+use lieflow::nalgebra::{Matrix3, Vector3};
+use lieflow::problems::{Flow, LinearFlow};
+use lieflow::{Solve, Stats};
+
+/// Turns about z at this rate.
+fn turn(
+    rate: impl Fn(f64) -> f64 + Copy,
+) -> LinearFlow<So3<f64>, LeftTranslation, impl Fn(f64, &mut Vector3<f64>) + Copy> {
+    Flow::of_time(So3::new(), LeftTranslation, move |t, v: &mut Vector3<f64>| v.z = rate(t))
+}
+
+fn angle(y: &Matrix3<f64>) -> f64 {
+    y[(1, 0)].atan2(y[(0, 0)])
+}
+
+/// f jumps every second: it is 1 in even seconds and 2 in odd ones. A step ends at each jump.
+///
+/// A step that begins anywhere else has its whole size. One from a jump to the next is shorter by a rounding of t.
+#[test]
+fn steps_to_jumps_have_their_whole_size() {
+    let (from, n) = (1e6_f64, 100);
+    let to = from + f64::from(n);
+    let jumps: Vec<f64> = (0..=n).map(|k| from + f64::from(k)).collect();
+    let exact = 1.5 * f64::from(n);
+    for span in [[from, to], [to, from]] {
+        let forward = span[1] > span[0];
+        // Backward, f(t) is the value at earlier times.
+        let second = move |t: f64| if forward { t.floor() } else { t.ceil() - 1.0 };
+        let flow = turn(move |t| 1.0 + second(t).rem_euclid(2.0));
+        let check = |y: Matrix3<f64>, most: f64, case: &str| {
+            let gap = angle(&y) - exact.copysign(span[1] - span[0]);
+            let error = (gap - TAU * (gap / TAU).round()).abs();
+            assert!(error < most, "{span:?} {case}: {error:e}");
+        };
+        macro_rules! check {
+            ($($method:expr),*) => {$(
+                let method = $method;
+                let solve = || Solve::new(&flow, &method, span).stops(jumps.clone());
+                // A rounding of t is 1.2e-10. There are 100 steps at rates of 1 and 2.
+                for (dt, most) in [(0.25, 1e-11), (0.3, 1e-11), (1.0, 1.8e-8)] {
+                    let run = solve().dt(dt).run(Matrix3::identity()).expect("a run");
+                    check(run.y, most, &format!("{dt}"));
+                }
+                let run = solve().tolerances(1e-13, 1e-13).run(Matrix3::identity());
+                check(run.expect("a run").y, 1.8e-8, "by error");
+            )*};
+        }
+        check![Rkmk::new(DOPRI5, Exp), Rkmk::new(DOP853, Exp)];
+    }
+}
+
+/// The rounding of t in f is no reason for small steps: a rate of cos t at times of a clock, with tolerances far below that
+/// rounding. There are no more of them than near t = 0, but for a search after 256 steps. The error after 20 s is below that
+/// of an f that is ε·t late.
+#[test]
+fn the_rounding_of_time_makes_no_steps_small() {
+    for t0 in [1e6_f64, 1.7e9] {
+        let span = [t0, t0 + 20.0];
+        let exact = span[1].sin() - span[0].sin();
+        let flow = turn(f64::cos);
+        macro_rules! check {
+            ($($method:expr),*) => {$(
+                for tolerance in [1e-14, 1e-11, 1e-8, 1e-5] {
+                    let method = $method;
+ let solve = Solve::new(&flow, &method, span).tolerances(tolerance, tolerance);
+                    let run = solve.run(Matrix3::identity()).expect("a run");
+                    let error = (angle(&run.y) - exact).abs();
+                    let Stats { accepted, rejected, .. } = run.stats;
+                    let case = format!("{t0:e} {tolerance:e}: {accepted} {rejected} {error:e}");
+                    let allowed = 100.0 * tolerance + 20.0 * f64::EPSILON * t0;
+                    let near_0 = Solve::new(&flow, &method, [0.0, 20.0]).tolerances(tolerance, tolerance);
+                    let near_0 = near_0.run(Matrix3::identity()).expect("a run").stats.accepted;
+                    let most = near_0 + near_0 / 5 + 300;
+                    assert!(error < allowed && accepted + rejected < most, "{case} {near_0}");
+                }
+            )*};
+        }
+        check![Rkmk::new(DOPRI5, Exp), Rkmk::new(DOP853, Exp), Rk(DOPRI5), Doubling(Magnus4)];
+    }
+}
+
+/// A field that does not know the time is integrated to the tolerance, whatever the time.
+#[test]
+fn an_autonomous_field_keeps_its_tolerance() {
+    use lieflow::problems::RigidBody;
+    let body = RigidBody::<f64>::new([1.0, 2.0, 3.0]).expect("moments");
+    let start = Vector3::new(0.2, 1.0, 0.4);
+    let run = |t0: f64, tolerance: f64| {
+        let method = Rkmk::new(DOP853, Exp);
+        let solve = Solve::new(&body, &method, [t0, t0 + 16.0]).tolerances(tolerance, tolerance);
+        solve.run(start).expect("a run")
+    };
+    for tolerance in [1e-9, 1e-13] {
+        let (here, there) = (run(0.0, tolerance), run(1e9, tolerance));
+        assert!((here.y - there.y).norm() < 10.0 * tolerance, "{tolerance:e}");
+        assert!(here.stats.accepted.abs_diff(there.stats.accepted) <= 2);
+    }
+}
