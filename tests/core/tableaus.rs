@@ -3,6 +3,7 @@
 use crate::support::orders::{order_conditions, row_conditions};
 use lieflow::catalog::TABLEAUS;
 use lieflow::maps::Exp;
+use lieflow::methods::low_storage::TwoN;
 use lieflow::methods::tableau::{Tableau, order_defects};
 use lieflow::methods::{Rk, Rkmk, tableau};
 use lieflow::{Error, Method, Solve};
@@ -34,6 +35,33 @@ fn every_tableau_has_its_order_and_no_more() {
     check_all!(EULER MIDPOINT HEUN RK4 THREE_EIGHTHS BS3 RKF45 DOPRI5 VERNER6 DOP853);
     let listed: Vec<_> = TABLEAUS.iter().map(|t| t.name).collect();
     assert_eq!(names, listed, "a tableau of the catalog is not checked here");
+}
+
+/// The order conditions of a method with low storage, to the rounding of its coefficients.
+fn check_low_storage<const S: usize>(table: &TwoN<S>) {
+    // u ← u + b_i d_i with d_i = a_i d_{i−1} + h f_i, as a tableau: the rows are u before each stage.
+    let (mut a, mut b, mut d) = ([[0.0; S]; S], [0.0; S], [0.0; S]);
+    for i in 0..S {
+        a[i] = b;
+        d = d.map(|x| table.a[i] * x);
+        d[i] += 1.0;
+        b = core::array::from_fn(|j| b[j] + table.b[i] * d[j]);
+    }
+    let largest = table.a.iter().fold(1.0, |most: f64, x| most.max(x.abs()));
+    let defects = order_defects(table.order, &a, &b);
+    let worst = defects.iter().fold(0.0, |most: f64, defect| most.max(defect.abs()));
+    assert!(worst < 1e-15 * largest, "{}: {worst:e}", table.name);
+    let times = a.iter().zip(table.c).map(|(row, c)| (row.iter().sum::<f64>() - c).abs());
+    assert!(times.fold(0.0, f64::max) < 1e-15 * largest, "{}: {:?}", table.name, table.c);
+}
+
+#[test]
+fn low_storage_methods_have_their_order_to_rounding() {
+    use lieflow::methods::low_storage::{EES25, EES27, LS3, LS3_BP, LS4, LS5, LS32};
+    macro_rules! check_all {
+        ($($table:ident)*) => { $(check_low_storage(&$table);)* };
+    }
+    check_all!(EES25 EES27 LS3 LS3_BP LS32 LS4 LS5);
 }
 
 #[test]
