@@ -85,8 +85,11 @@ impl StepControl {
 
     fn limits(self, arg: &'static str, h: f64) -> Result<Self, Error> {
         if self.min_step > self.max_step {
-            let expected = format!("{} ≤ max_step = {}", self.min_step, self.max_step);
-            return Err(Error::out_of_range(arg, h, format!("min_step = {expected}")));
+            let expected = match arg {
+                "min_step" => format!("at most max_step = {}", self.max_step),
+                _ => format!("at least min_step = {}", self.min_step),
+            };
+            return Err(Error::out_of_range(arg, h, expected));
         }
         Ok(self)
     }

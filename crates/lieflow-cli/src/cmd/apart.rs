@@ -36,6 +36,10 @@ pub(super) struct Apart {
     pub(super) rows: u64,
     /// The distance of each part of the state.
     pub(super) parts: Vec<Largest>,
+    /// The distance of each column of these parts.
+    pub(super) columns: Vec<Vec<ColumnApart>>,
+    /// The largest distance of each column of the invariants.
+    pub(super) laws: Vec<f64>,
     /// The distance of the zeros of each event.
     pub(super) events: Vec<ZerosApart>,
 }
@@ -47,6 +51,15 @@ pub(super) struct Gap {
     pub(super) absolute: f64,
     /// The distance in sizes of the part; that itself, where it is an angle.
     pub(super) relative: f64,
+}
+
+/// How far a column is from what it should be.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct ColumnApart {
+    /// The largest distance.
+    pub(super) gap: f64,
+    /// Its largest value, without the sign.
+    pub(super) size: f64,
 }
 
 /// The largest distance over rows, in sizes of the part, and that of the last row.
@@ -117,7 +130,11 @@ impl Apart {
     fn new(watch: &Watch<'_>, events: usize) -> Self {
         let none = Largest { gap: Gap::default(), t: f64::NAN, last: Gap::default() };
         let parts = parts_of(watch).map(|_| none).collect();
-        Apart { rows: 0, parts, events: vec![ZerosApart::default(); events] }
+        let columns = parts_of(watch)
+            .map(|(_, part)| vec![ColumnApart::default(); part.columns.len()])
+            .collect();
+        let laws = vec![0.0; watch.laws.iter().map(|law| law.columns.len()).sum()];
+        Apart { rows: 0, parts, columns, laws, events: vec![ZerosApart::default(); events] }
     }
 
     /// The distances of rows from others, each pair with its time.
@@ -182,9 +199,16 @@ impl Apart {
     fn see(&mut self, watch: &Watch<'_>, sizes: &[f64], t: f64, [a, b]: [&[f64]; 2]) {
         let [a, b] = [a, b].map(|numbers| watch.model.schema().row(numbers));
         self.rows += 1;
+        let laws = watch.laws.iter().flat_map(|law| a[*law].iter().zip(&b[*law]));
+        self.laws.iter_mut().zip(laws).for_each(|(gap, (a, b))| *gap = gap.max((a - b).abs()));
         let parts = parts_of(watch).zip(sizes);
-        for (largest, ((observable, part), size)) in self.parts.iter_mut().zip(parts) {
+        let own = self.parts.iter_mut().zip(&mut self.columns);
+        for ((largest, columns), ((observable, part), size)) in own.zip(parts) {
             let [a, b] = [&a[observable], &b[observable]].map(|row| &row[part.columns.clone()]);
+            for (column, (a, b)) in columns.iter_mut().zip(a.iter().zip(b)) {
+                column.gap = column.gap.max((a - b).abs());
+                column.size = column.size.max(a.abs());
+            }
             let absolute = part.measure.distance(a, b);
             let relative = match absolute {
                 0.0 => 0.0,

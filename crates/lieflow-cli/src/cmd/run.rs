@@ -298,8 +298,13 @@ pub fn run_scene(
         Ok(Some(checked)) => {
             let error = checked.accuracy.relative();
             let numbers = rows.ends().map_or(0.0, |[(_, row), _]| largest(row.values()));
-            let moving = drift.iter().filter(|(_, drift)| drift.is_of_the_motion(error, numbers));
-            warnings.extend(moving.map(no_constant));
+            let gaps: BTreeMap<&String, f64> = watch.law_columns().zip(checked.laws).collect();
+            let is_moving = |(name, drift): &(&String, &Drift)| {
+                let gap = gaps.get(name).copied().unwrap_or(0.0);
+                drift.is_of_the_motion(error, numbers, gap)
+            };
+            warnings.extend(drift.iter().filter(is_moving).map(no_constant));
+            notes.extend(checked.notes);
             let other_zeros = checked.other_zeros.into_iter().zip(&are_rounding);
             warnings.extend(
                 other_zeros.filter(|(_, is_rounding)| !**is_rounding).filter_map(|(told, _)| told),

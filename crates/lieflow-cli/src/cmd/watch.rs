@@ -76,15 +76,20 @@ impl<'a> Watch<'a> {
         line.extend(self.columns.iter().map(|(_, place)| row.numbers()[*place]));
     }
 
+    /// The names of the columns of the invariants.
+    pub(super) fn law_columns(&self) -> impl Iterator<Item = &'a String> {
+        self.laws.iter().flat_map(|law| &law.columns)
+    }
+
     /// The invariants of the next row, each in its turn.
     fn see(&self, t: f64, row: Row<'_>, watched: &mut Vec<Watched>) {
         let of = |&law: &&'a Observable| row[law].iter().map(move |x| (law, *x, row.terms(law)));
         let values = self.laws.iter().flat_map(of);
         if watched.is_empty() {
-            let columns = self.laws.iter().flat_map(|law| &law.columns);
-            let starts = columns.zip(values).filter_map(|(name, (quantity, x, terms))| {
-                Some(Watched::new(t, Invariant::new(name, quantity.law?), x, terms))
-            });
+            let starts =
+                self.law_columns().zip(values).filter_map(|(name, (quantity, x, terms))| {
+                    Some(Watched::new(t, Invariant::new(name, quantity.law?), x, terms))
+                });
             watched.extend(starts);
         } else {
             let rows = watched.iter_mut().zip(values);

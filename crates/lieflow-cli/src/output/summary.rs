@@ -10,7 +10,7 @@ use lieflow::problems::Invariant;
 use lieflow::solve;
 use lieflow_model::problem::Property;
 use lieflow_model::scene::{Defaults, Scene};
-use lieflow_model::schema::{Dimension, Observable, Units};
+use lieflow_model::schema::{Observable, Units};
 use lieflow_timing::Fit;
 
 use super::files::remove_old;
@@ -141,13 +141,13 @@ pub struct Summary {
 impl Summary {
     /// The unit of times; empty where it is not known.
     pub fn time_unit(&self) -> String {
-        self.unit_names.of(Dimension::TIME).unwrap_or_default()
+        self.units.get(TIME).cloned().unwrap_or_default()
     }
 }
 
 /// The units of t and of the columns of these quantities of a scene, where they are known.
 pub fn units_of(scene: &Scene, written: &[&Observable]) -> BTreeMap<String, String> {
-    let time = (TIME.to_string(), scene.units.of(Dimension::TIME).unwrap_or_default());
+    let time = (TIME.to_string(), scene.units.of(scene.problem.kind().time).unwrap_or_default());
     let kind = scene.problem.kind();
     let columns = written.iter().flat_map(|quantity| {
         let info = kind.quantity(quantity.name);
@@ -458,14 +458,15 @@ impl Drift {
     /// Did it move by more than rounding explains, though the method promises to keep it? The promise is about the ends
     /// of steps.
     pub fn breaks_a_promise(&self) -> bool {
-        self.promised && (self.max.is_nan() || self.max > self.rounding) && !self.is_of_rows()
+        let max = self.max_at_ends_of_steps.unwrap_or(self.max);
+        self.promised && (max.is_nan() || max > self.rounding) && !self.is_of_rows()
     }
 
     /// Did it move by far more than the relative error of the run explains? Then it is no constant of the motion. A formula
-    /// that is 0 may have terms as large as `numbers`, those of its row.
-    pub fn is_of_the_motion(&self, error: f64, numbers: f64) -> bool {
+    /// that is 0 may have terms as large as `numbers`, those of its row. In the motion without errors its value is `gap` away.
+    pub fn is_of_the_motion(&self, error: f64, numbers: f64, gap: f64) -> bool {
         let error = error.max(NO_CONSTANT / BEYOND);
-        let explained = self.rounding.max(error * self.size).max(f64::EPSILON * numbers);
+        let explained = self.rounding.max(error * self.size).max(f64::EPSILON * numbers).max(gap);
         !self.promised && self.max > BEYOND * explained && !self.is_of_rows()
     }
 }

@@ -21,5 +21,6 @@ mod room;
 mod run;
 mod same_bits;
 mod second_run;
+mod small;
 mod support;
 mod units;

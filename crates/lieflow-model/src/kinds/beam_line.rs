@@ -20,6 +20,7 @@ pub(super) const KIND: Kind = Kind {
     name: "beam-line",
     equation: "x″ = −k_x x, z″ = −k_z z: (k_x, k_z) = (k, −k) in a quadrupole, (1/radius², 0) in a dipole",
     summary: "a particle through the magnets of a periodic beam line; t is the path along it",
+    time: Dimension::LENGTH,
     ..Kind::of::<Keys, BeamLine>(|section| read_with(section, read))
 };
 

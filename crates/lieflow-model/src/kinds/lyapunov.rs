@@ -83,7 +83,15 @@ fn read(mut keys: Keys) -> Result<Forms, ReadError> {
     let by = |f: &Formula| (1..=n).map(|j| f.derivative(j)).collect::<Result<Vec<_>, _>>();
     let jacobian = field.iter().map(by).collect::<Result<Vec<_>, _>>()?.concat();
     let (field, jacobian) = (field.into(), jacobian.into());
-    Ok(Forms::of(Exponents { names, field, jacobian, x }))
+    let system = Exponents { names, field, jacobian, x };
+    match Q::taken(&system, system.names.variables()[1..].iter(), &["x"]) {
+        Some((name, quantity)) => {
+            let message =
+                format!("`{name}` is a column of the quantity `{quantity}`, expected another name");
+            Err(Refusal::at("variables", message).into())
+        }
+        None => Ok(Forms::of(system)),
+    }
 }
 
 /// t and x, for formulas.

@@ -12,6 +12,8 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::flow::OnSpheres;
 use super::prelude::*;
+use crate::problem::part;
+use crate::schema::{Component, Measure};
 
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {
@@ -101,6 +103,10 @@ impl System for Bodies {
         .of_dimension(Dimension::ANGULAR_MOMENTUM)
         .with_columns(|bodies| {
             bodies.each(|i| [1, 2, 3].map(|axis| format!("m{i}_{axis}"))).flatten().collect()
+        })
+        .in_parts(|bodies| {
+            let of = |i| part(&format!("body {i}"), 3 * (i - 1), 3, Measure::Length);
+            bodies.each(|i| Component { what: "momentum of", ..of(i) }).collect()
         }),
         Q::numbers(
             "energy",

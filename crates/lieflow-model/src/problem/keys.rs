@@ -10,6 +10,7 @@ use super::quantity::Quantity;
 use super::system::System;
 use crate::formula::{Names, Parameters};
 use crate::reader::{Read, ReadError, Shape, all, seen};
+use crate::schema::Dimension;
 
 /// The keys of a kind, as listings show them.
 pub(crate) trait KeyTable {
@@ -21,7 +22,8 @@ impl Kind {
     /// An entry without its texts: keys, the quantities of a system, and what reads the keys.
     pub(crate) const fn of<K: KeyTable, S: System>(read: ReadForms) -> Kind {
         let quantities = || S::QUANTITIES.iter().map(Quantity::info).collect();
-        Kind { name: "", equation: "", summary: "", keys: K::INFO, instead: &[], quantities, read }
+        let (time, instead) = (Dimension::TIME, &[]);
+        Kind { name: "", equation: "", summary: "", time, keys: K::INFO, instead, quantities, read }
     }
 }
 

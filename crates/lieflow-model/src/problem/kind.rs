@@ -22,6 +22,8 @@ pub struct Kind {
     pub equation: &'static str,
     /// What it is, in one line.
     pub summary: &'static str,
+    /// The dimension of t.
+    pub time: Dimension,
     /// The keys of `[problem]`, besides `kind`.
     pub keys: &'static [KeyInfo],
     /// Keys of numbers, each with what to use for numbers that change with time.

@@ -263,6 +263,25 @@ impl<S: System> Quantity<S> {
         }
     }
 
+    /// The first of these names that is a column of another quantity than these, with the name of that.
+    pub(crate) fn taken<'n>(
+        system: &S,
+        mut names: impl Iterator<Item = &'n String>,
+        own: &[&str],
+    ) -> Option<(&'n String, &'static str)>
+    where
+        S: System,
+    {
+        let others = S::QUANTITIES.iter().filter(|quantity| !own.contains(&quantity.info.name));
+        let others = others.filter(|quantity| (quantity.missing)(system).is_none());
+        let columns: Vec<_> =
+            others.map(|quantity| (quantity.info.name, quantity.column_names(system))).collect();
+        names.find_map(|name| {
+            let (quantity, _) = columns.iter().find(|(_, columns)| columns.contains(name))?;
+            Some((name, *quantity))
+        })
+    }
+
     /// The rows and columns of a quantity that is a matrix, or has the parts of one.
     pub(crate) fn matrix(&self, system: &S) -> Option<[usize; 2]> {
         match self.columns {

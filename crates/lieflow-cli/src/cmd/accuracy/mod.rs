@@ -18,7 +18,7 @@ use lieflow_model::scene::Scene;
 use lieflow_model::schema::{Component, Observable, Row};
 use lieflow_timing::cpu_seconds;
 
-use super::apart::{Apart, Beside, Gap, Largest, Limits, ZerosApart, norm, parts_of};
+use super::apart::{Apart, Beside, ColumnApart, Gap, Largest, Limits, ZerosApart, norm, parts_of};
 use super::shown::{Choice, Shown};
 use super::watch::Watch;
 use crate::output::{Accuracy, Distance, FoundBy, PartError, RowSample, ShownRows, number, rough};
@@ -36,6 +36,12 @@ const BRIEF: f64 = 0.015;
 const PASSED_OVER: f64 = 30.0;
 /// A motion that makes this of the last digits of its start is worth a warning.
 const AMPLIFIED: f64 = 1e-8;
+/// A column whose error is more than this share of its size has no right digit.
+const NO_DIGIT: f64 = 0.1;
+/// That is told where the relative error of its part is below this.
+const KNOWN: f64 = 0.01;
+/// And where the column is this many times larger than the rounding of its part.
+const AMPLE: f64 = 100.0;
 /// A tolerance this small is compared with a larger one: a smaller one is rounding.
 const SMALLEST: f64 = 1e-13;
 
@@ -78,6 +84,10 @@ pub(super) struct Checked {
     pub(super) wrong_zeros: Vec<bool>,
     /// The warning about each event that has another number of zeros there.
     pub(super) other_zeros: Vec<Option<String>>,
+    /// How far each column of the invariants is from its value in the other motion.
+    pub(super) laws: Vec<f64>,
+    /// The columns that have no right digit, though their part has.
+    pub(super) notes: Vec<String>,
     /// What a reader should know.
     pub(super) warnings: Vec<String>,
 }
@@ -234,7 +244,36 @@ impl<'a> Check<'a> {
             (accuracy, time_errors) = (other, vec![None; time_errors.len()]);
             warnings.push(warning);
         }
-        Ok(Checked { accuracy, time_errors, wrong_zeros, other_zeros, warnings })
+        let notes = self.small_columns(&apart, share);
+        let laws = apart.laws.iter().map(|gap| gap * share).collect();
+        Ok(Checked { accuracy, time_errors, wrong_zeros, other_zeros, laws, notes, warnings })
+    }
+
+    /// The columns that are so small beside their part that they have no right digit, in words. The error of a part is
+    /// relative to its length.
+    fn small_columns(&self, apart: &Apart, share: f64) -> Vec<String> {
+        let told = |(place, (observable, part)): (usize, (&Observable, &Component))| {
+            let (largest, columns) = (&apart.parts[place], &apart.columns[place]);
+            let rounding = AMPLE * explained_by_rounding(self.own.steps, self.run.sizes[place]);
+            let is_poor = |column: &ColumnApart| column.gap * share > column.size * NO_DIGIT;
+            let names = observable.columns[part.columns.clone()].iter().zip(columns);
+            let mut poor = names.filter(|(_, column)| is_poor(column) && column.size > rounding);
+            let knows_the_part = !part.measure.is_angle() && largest.gap.relative * share < KNOWN;
+            let (name, ColumnApart { gap, size }) = poor.next().filter(|_| knows_the_part)?;
+            let further = match poor.count() {
+                0 => String::new(),
+                1 => ", and one further column".into(),
+                n => format!(", and {n} further columns"),
+            };
+            let whole = if part.name.is_empty() { observable.name } else { &part.name };
+            Some(format!(
+                "`{name}` has no right digit{further}: it is at most {}, and wrong by {}. The error of `{whole}` is relative to \
+                 its length",
+                rough(*size),
+                rough(gap * share)
+            ))
+        };
+        parts_of(self.watch).enumerate().filter_map(told).collect()
     }
 
     /// The size of short steps, where steps are chosen by their error and may be larger.

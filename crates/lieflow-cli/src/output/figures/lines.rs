@@ -6,7 +6,7 @@ use lieflow::problems::explained_by_rounding;
 use lieflow_figures::number::short;
 use lieflow_figures::{Axis, Block, Chart, Marks};
 use lieflow_model::problem::Kind;
-use lieflow_model::schema::{Component, Dimension, Observable, Row, Scale, Units};
+use lieflow_model::schema::{Component, Observable, Row, Scale, Units};
 
 use super::sample::RowSample;
 use super::swings::{Curve, Drawn, constants, drawn};
@@ -144,7 +144,7 @@ fn parts_of<'a>(
     let shown = |title: String, axis: String, columns: &[usize]| Shown {
         title,
         axes: ["t".into(), axis],
-        units: [units.of(Dimension::TIME).unwrap_or_default(), unit.clone()],
+        units: [units.of(kind.time).unwrap_or_default(), unit.clone()],
         columns: columns.iter().map(|&index| Column { quantity, index }).collect(),
         as_they_are: false,
     };
@@ -333,7 +333,7 @@ mod tests {
         let named = |parts: &[(&str, usize)]| -> Vec<(String, usize)> {
             parts.iter().map(|(title, count)| (title.to_string(), *count)).collect()
         };
-        let bodies = (1..=4).map(|i| (format!("Angular momenta in the bodies: body {i}"), 3));
+        let bodies = (1..=4).map(|i| (format!("The momentum of body {i}"), 3));
         assert_eq!(shown("many-bodies", "momentum_body", &[]), bodies.collect::<Vec<_>>());
         let matrix = (1..=5).map(|i| (format!("The point: row {i}"), 5));
         assert_eq!(shown("rotating-drive", "point", &[]), matrix.collect::<Vec<_>>());

@@ -109,7 +109,21 @@ fn read(mut keys: Keys) -> Result<Forms, ReadError> {
     };
     let kept = mistakes.keep(kept);
     let kept = mistakes.or(kept)?;
-    Ok(Forms::of(Composed { parts, start, invariants: kept, notes }))
+    let composed = Composed { parts, start, invariants: kept, notes };
+    // The names of parts and of what they keep are apart already.
+    let known = ["state", "vectors", "lengths", "defects", "invariants"];
+    let own = coordinates(composed.parts.iter());
+    let taken = Q::taken(&composed, own.iter(), &known).map(|taken| ("parts", taken));
+    let invariants = composed.invariants.iter().map(|(name, _)| name);
+    let taken = taken.or(Q::taken(&composed, invariants, &known).map(|at| ("invariants", at)));
+    match taken {
+        Some((key, (name, quantity))) => {
+            let message =
+                format!("`{name}` is a column of the quantity `{quantity}`, expected another name");
+            Err(Refusal::at(key, message).into())
+        }
+        None => Ok(Forms::of(composed)),
+    }
 }
 
 /// The invariants, whose names are none of those that are taken.
@@ -236,7 +250,7 @@ fn names_of(
         for column in own.iter().cloned().chain(space.kept(name)) {
             if taken.contains(&column) {
                 let message =
-                    format!("part `{name}`: another part has a number `{column}` already");
+                    format!("part `{name}`: its column `{column}` is one of another part already");
                 return Err(Refusal::at(key, message).into());
             }
             taken.insert(column);

@@ -1,0 +1,80 @@
+//! What is small beside the rest of a state: bodies, columns and invariants; and columns of one name.
+
+use crate::support::Folder;
+
+/// A tiny body beside a huge one has an error of its own, and the constancy of its energy is not doubted.
+#[test]
+fn the_error_of_each_body_is_told() {
+    let folder = Folder::new();
+    folder.write(
+        "scene.toml",
+        "[problem]\nkind = \"rigid-bodies\"\nbodies = [\n\
+         { inertia = [1e6, 2e6, 3e6], momentum_body = [2000.0, 100.0, 3000.0] },\n\
+         { inertia = [1e-3, 2e-3, 2.5e-3], momentum_body = [3e-3, 2e-3, 1e-3] },\n]\n\
+         [method]\nname = \"rkmk4\"\n[time]\nt_span = [0.0, 20.0]\ndt = 0.5\n",
+    );
+    let out = folder.lieflow(&["run", "scene.toml", "--out", "out"]).ok();
+    assert!(out.contains("body 2 0.06") && out.contains("this run is inaccurate"), "{out}");
+    assert!(!out.contains("no constant of this motion"), "{out}");
+}
+
+/// Columns without a right digit are named, where the vector that they belong to has some.
+#[test]
+fn columns_without_a_right_digit_are_told() {
+    let folder = Folder::new();
+    let run = |start: &str, dt: &str| {
+        folder.write(
+            "scene.toml",
+            &format!(
+                "[problem]\nkind = \"composed\"\ninvariants = {{ small = \"b2^2+b3^2\" }}\n[[problem.parts]]\nname = \"b\"\n\
+                 space = \"numbers\"\nstart = {start}\nfield = [\"0\", \"4*b3\", \"-4*b2\"]\n[method]\nname = \"rkmk4\"\n\
+                 [time]\nt_span = [0.0, 20.0]\ndt = {dt}\n"
+            ),
+        );
+        folder.lieflow(&["run", "scene.toml", "--out", "out"]).ok()
+    };
+    let small = run("[1e6, 1e-3, 0]", "0.25");
+    let told = "note: `b2` has no right digit, and one further column: it is at most 0.00";
+    assert!(small.contains(told) && small.contains("The error of `b` is relative to"), "{small}");
+    assert!(!small.contains("no constant of this motion"), "{small}");
+    // A column of 0 has no digits, and is no news. Large ones have theirs.
+    for (start, dt) in [("[1, 0, 0]", "0.25"), ("[1, 1, 0]", "0.25"), ("[1e6, 1e-3, 0]", "0.01")] {
+        let right = run(start, dt);
+        assert!(!right.contains("has no right digit"), "{start} {dt}: {right}");
+    }
+}
+
+/// An invariant whose value is 0 moves by the error of the run: that is no reason to doubt it.
+#[test]
+fn an_invariant_of_0_is_not_doubted() {
+    let folder = Folder::new();
+    for method in ["cf4", "rk4", "rkmk4"] {
+        let method = format!("method.name=\"{method}\"");
+        let set = ["--set", "method=", "--set", &method, "--out", "out"];
+        let args = [&["run", "gyrostat", "--no-page"][..], &set[..]].concat();
+        let out = folder.lieflow(&args).ok();
+        assert!(!out.contains("no constant of this motion"), "{out}");
+    }
+}
+
+/// A name of a scene that would hide a column of another quantity is refused.
+#[test]
+fn names_of_other_columns_are_refused() {
+    let folder = Folder::new();
+    folder.write(
+        "growth.toml",
+        "[problem]\nkind = \"lyapunov\"\nvariables = [\"s1\", \"y\"]\nx = [1, 1]\nfield = [\"s1\", \"-y\"]\n\
+         [time]\nt_span = [0, 2]\n",
+    );
+    let refused = folder.lieflow(&["run", "growth.toml", "--out", "out"]).refused();
+    assert!(refused.contains("growth.toml:3:"), "{refused}");
+    assert!(refused.contains("`s1` is a column of the quantity `growth`"), "{refused}");
+    folder.write(
+        "turn.toml",
+        "[problem]\nkind = \"composed\"\ninvariants = { qw = \"a\" }\n\
+         [[problem.parts]]\nname = \"g\"\nspace = \"rotation\"\nframe = \"space\"\nfield = [\"0\", \"0\", \"1\"]\n\
+         [[problem.parts]]\nname = \"a\"\nspace = \"numbers\"\nstart = [7]\nfield = [\"0\"]\n[time]\nt_span = [0, 2]\n",
+    );
+    let refused = folder.lieflow(&["run", "turn.toml", "--out", "out"]).refused();
+    assert!(refused.contains("`qw` is a column of the quantity"), "{refused}");
+}
