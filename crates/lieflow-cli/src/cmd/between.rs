@@ -11,7 +11,7 @@ type ValueOfRow = Box<dyn Fn(f64, Row<'_>) -> f64>;
 
 /// A value that is this part of the largest one may be a zero that is found.
 const NEAR_ZERO: f64 = 1e-9;
-/// A function that stays below this many last digits of the largest number of a row is rounding, if it has many zeros.
+/// A function that stays below this many last digits of the largest number of its row is rounding, if it has many zeros.
 const ROUNDING: f64 = 100.0 * f64::EPSILON;
 /// Rounding has at least one zero in so many rows.
 const SELDOM: u64 = 8;
@@ -41,8 +41,8 @@ pub(super) struct Between {
     largest: f64,
     /// The largest absolute value at a row, at the end of a step, or at a point that was looked at.
     largest_anywhere: f64,
-    /// The largest number of the rows.
-    size: f64,
+    /// The largest value there in units of the largest number of its row.
+    largest_share: f64,
 }
 
 impl Between {
@@ -58,7 +58,7 @@ impl Between {
             rows: 0,
             largest: 0.0,
             largest_anywhere: 0.0,
-            size: 0.0,
+            largest_share: 0.0,
         }
     }
 
@@ -67,8 +67,7 @@ impl Between {
         let value = (self.value)(t, row);
         self.rows += 1;
         self.largest = self.largest.max(value.abs());
-        self.largest_anywhere = self.largest_anywhere.max(self.largest);
-        self.size = row.values().iter().fold(self.size, |size, x| size.max(x.abs()));
+        self.note_value(value, row);
         if let Some(before) = self.before
             && self.rows <= LOOKED_AT
         {
@@ -86,7 +85,16 @@ impl Between {
 
     /// The end of a step.
     pub(super) fn see_end_of_step(&mut self, t: f64, row: Row<'_>) {
-        self.largest_anywhere = self.largest_anywhere.max((self.value)(t, row).abs());
+        self.note_value((self.value)(t, row), row);
+    }
+
+    /// A value of the function with this row.
+    fn note_value(&mut self, value: f64, row: Row<'_>) {
+        if value != 0.0 {
+            let size = row.values().iter().fold(0.0, |size: f64, x| size.max(x.abs()));
+            self.largest_anywhere = self.largest_anywhere.max(value.abs());
+            self.largest_share = self.largest_share.max(value.abs() / size);
+        }
     }
 
     /// Looks at the function of t between two rows, with the columns of the second one: it may swing fast by itself.
@@ -95,8 +103,7 @@ impl Between {
         let values: Vec<f64> = (0..=POINTS).map(|k| (self.value)(at(k), row)).collect();
         let swings =
             values.windows(2).filter(|pair| (pair[0] > 0.0) != (pair[1] > 0.0)).count() as u64;
-        self.largest_anywhere =
-            values.iter().fold(self.largest_anywhere, |most, x| most.max(x.abs()));
+        values.iter().for_each(|value| self.note_value(*value, row));
         // In one direction every second zero counts, and the columns move a little.
         if swings > 2 * found + 2 {
             self.missed += 1;
@@ -110,7 +117,7 @@ impl Between {
 
     /// Are the values of the function rounding alone, with this many zeros?
     pub(super) fn is_rounding(&self, zeros: u64) -> bool {
-        self.rows > 1 && self.largest_anywhere <= ROUNDING * self.size && SELDOM * zeros > self.rows
+        self.rows > 1 && self.largest_share <= ROUNDING && SELDOM * zeros > self.rows
     }
 
     /// The warning about zeros that were missed.

@@ -78,3 +78,16 @@ fn names_of_other_columns_are_refused() {
     let refused = folder.lieflow(&["run", "turn.toml", "--out", "out"]).refused();
     assert!(refused.contains("`qw` is a column of the quantity"), "{refused}");
 }
+
+/// An event is not rounding because one row is at a pole, where its numbers are 1e15.
+#[test]
+fn a_row_at_a_pole_is_no_measure_of_an_event() {
+    let folder = Folder::new();
+    folder.write(
+        "scene.toml",
+        "[problem]\nkind = \"riccati\"\nc = [[1]]\nb = [[-1]]\np = [[0]]\n[time]\nt_span = [0, 10]\n\
+         [[events]]\nname = \"ang\"\nwhen = \"angle1 - pi/2\"\n[output]\ntimes = [1.5707963267948966]\n",
+    );
+    let out = folder.lieflow(&["run", "scene.toml", "--out", "out"]).ok();
+    assert!(!out.contains("zero up to rounding") && out.contains("ang"), "{out}");
+}
