@@ -82,6 +82,7 @@ trait Stepper<P: Problem> {
         ScalarOf<P>: Into<f64>;
     fn iterations(&self) -> u64;
     fn reused(&self) -> u64;
+    fn forget(&mut self);
     fn each_memory(&mut self, each: &mut dyn FnMut(&mut f64));
     fn prepare(
         &mut self,
@@ -236,6 +237,9 @@ impl<P: Problem, M: Method<P>, E: Estimate<P, M>> Stepper<P> for MethodWithWork<
     fn reused(&self) -> u64 {
         self.method.reused(&self.work)
     }
+    fn forget(&mut self) {
+        self.method.forget(&mut self.work);
+    }
     fn each_memory(&mut self, each: &mut dyn FnMut(&mut f64)) {
         self.method.each_memory(&mut self.work, each);
     }
@@ -324,6 +328,9 @@ where
     }
     fn reused(&self, work: &Self::Work) -> u64 {
         work.stepper.reused()
+    }
+    fn forget(&self, work: &mut Self::Work) {
+        work.stepper.forget();
     }
     fn each_memory(&self, work: &mut Self::Work, each: &mut dyn FnMut(&mut f64)) {
         work.stepper.each_memory(each);

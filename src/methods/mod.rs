@@ -218,6 +218,10 @@ pub trait Method<P: Problem> {
         0
     }
 
+    /// Forgets values of f that the workspace keeps for the next step, because f may be another one now. Most methods keep
+    /// none.
+    fn forget(&self, _work: &mut Self::Work) {}
+
     /// Makes the workspace. `like` is any point of M.
     ///
     /// # Errors

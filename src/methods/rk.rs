@@ -126,6 +126,9 @@ impl<P: Ambient, const S: usize> Method<P> for Rk<S> {
     fn reused(&self, work: &Self::Work) -> u64 {
         work.known.used
     }
+    fn forget(&self, work: &mut Self::Work) {
+        work.known.forget();
+    }
     fn prepare(
         &self,
         problem: &P,

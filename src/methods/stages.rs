@@ -111,6 +111,11 @@ impl<Y: Metric + Clone> Known<Y> {
         is_there
     }
 
+    /// No value is known.
+    pub(super) fn forget(&mut self) {
+        self.t = None;
+    }
+
     /// The value is known there.
     #[inline(always)]
     pub(super) fn set(&mut self, t: Y::Scalar, y: &Y) {

@@ -84,6 +84,8 @@ pub(super) trait AnyPoints {
     fn iterations(&self) -> u64;
     /// The evaluations of f that the workspace did not need.
     fn reused(&self) -> u64;
+    /// Forgets values of f that are kept for the next step.
+    fn forget(&mut self);
     /// The name of the group.
     fn group_name(&self) -> String;
     /// Calls `each` with the numbers of this part of the state.
@@ -529,6 +531,9 @@ impl<P: Problem, M: Method<P>> AnyPoints for Points<'_, P, M> {
     }
     fn reused(&self) -> u64 {
         self.method.reused(&self.work)
+    }
+    fn forget(&mut self) {
+        self.method.forget(&mut self.work);
     }
     fn group_name(&self) -> String {
         self.problem.group().name()

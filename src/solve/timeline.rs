@@ -218,6 +218,9 @@ impl Timeline {
         if self.t == stop.t {
             return Ok(());
         }
+        if self.t == self.jumped_at {
+            run.points().forget();
+        }
         // Where all stages are within a step, none is at the stop.
         stop.jumps &= !self.facts.stages_within;
         match &mut self.pacer {

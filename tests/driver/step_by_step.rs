@@ -4,14 +4,14 @@ use std::cell::Cell;
 use std::time::Duration;
 
 use lieflow::actions::LeftTranslation;
-use lieflow::groups::So3;
+use lieflow::groups::{So3, Translations};
 use lieflow::maps::Exp;
-use lieflow::methods::Rkmk;
-use lieflow::methods::tableau::{DOP853, DOPRI5, HEUN, RK4};
+use lieflow::methods::tableau::{BS3, DOP853, DOPRI5, HEUN, RK4};
+use lieflow::methods::{AnyMethod, Rk, Rkmk};
 use lieflow::nalgebra::{Matrix3, Vector3};
 use lieflow::problems::Flow;
 use lieflow::so3::exp;
-use lieflow::{RunError, Solve, TimeGrid};
+use lieflow::{Event, RunError, Solve, TimeGrid};
 
 /// ω about one axis with a pulse of 1000 for a thousandth of the time: its integral up to t.
 const PULSE: [f64; 2] = [2.0, 2.001];
@@ -204,4 +204,32 @@ fn split_steps_have_the_error_that_is_stated() {
             assert!((share - 1.0).abs() < 0.05, "order {p}, {stops:?}: {share}");
         }
     }
+}
+
+/// f may be another one after `advance_to`, and after an event changed something that f depends on: its value at the end of
+/// the step before is not used.
+#[test]
+fn f_may_change_where_a_step_ends() {
+    let rate = Cell::new(1.0);
+    let flow = Flow::new(Translations::new(0.0, 1), LeftTranslation, |_, _: &f64, v: &mut f64| {
+        *v = rate.get()
+    });
+    macro_rules! check {
+        ($($method:expr),*) => {$({
+            let method = $method;
+            let solve = || Solve::new(&flow, &method, [0.0, 2.0]).tolerances(1e-3, 1e-3);
+            rate.set(1.0);
+            let mut run = solve().integrator(0.0).expect("a start");
+            run.advance_to(1.0).expect("steps");
+            rate.set(2.0);
+            let y = *run.advance_to(2.0).expect("steps");
+            assert!((y - 3.0).abs() < 1e-12, "{y}");
+            // The change leaves y as it is.
+            rate.set(1.0);
+            let switch = Event::new("switch", |t, _| t - 1.0).change(|_, _| rate.set(2.0));
+            let y = solve().event(switch).run(0.0).expect("a run").y;
+            assert!((y - 3.0).abs() < 1e-12, "{y}");
+        })*};
+    }
+    check![Rk(BS3), Rk(DOPRI5), Rkmk::new(DOPRI5, Exp), AnyMethod::embedded(Rk(DOPRI5))];
 }
