@@ -106,3 +106,26 @@ fn an_autonomous_field_keeps_its_tolerance() {
         assert!(here.stats.accepted.abs_diff(there.stats.accepted) <= 2);
     }
 }
+
+/// A run that is saved and restored between two measurements of the noise takes the same steps.
+#[test]
+fn a_restored_run_has_the_same_noise() {
+    let t0 = 1.7e9;
+    let flow = turn(f64::cos);
+    let method = Rkmk::new(DOPRI5, Exp);
+    let new = || {
+        let solve = Solve::new(&flow, &method, [t0, t0 + 20.0]).tolerances(1e-11, 1e-11);
+        solve.integrator(Matrix3::identity()).expect("a start")
+    };
+    let (mut run, mut saved) = (new(), Vec::new());
+    while !run.is_done() {
+        saved.push(run.save());
+        run.step().expect("a step");
+    }
+    for bytes in saved.iter().step_by(7) {
+        let mut other = new();
+        other.restore(bytes).expect("a state");
+        other.advance_to(t0 + 20.0).expect("steps");
+        assert_eq!((other.y(), other.stats()), (run.y(), run.stats()));
+    }
+}
