@@ -103,8 +103,6 @@ impl Timeline {
             h = h.max(min_step);
             if in_a_row == 0 && !self.is_exact() {
                 self.see_turns(run.points(), h);
-                let size = self.propose(h, stop).1;
-                self.see_noise_again(run.points(), size);
             }
             let (end, size) = self.propose(h, stop);
             if self.stats.accepted + self.stats.rejected >= max_steps {
@@ -113,6 +111,7 @@ impl Timeline {
             if end == self.t {
                 return Err(self.underflow(h, None));
             }
+            self.see_noise_again(run.points(), size);
             let step = self.step_to(end, end - self.t, jumps && end == stop);
             let Pacer::ByError(chooser) = &self.pacer else { return Ok(()) };
             let sizes = Sizes::new(chooser, stop, self.largest_size(1.0));

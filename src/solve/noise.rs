@@ -63,8 +63,8 @@ impl Timeline {
 
     /// Computes the noise of steps of this size, if that was long ago.
     pub(super) fn see_noise_again(&mut self, points: &mut dyn AnyPoints, size: f64) {
-        let Pacer::ByError(Chooser { noise, .. }) = &self.pacer else { return };
-        if self.stats.accepted >= noise.next {
+        let Pacer::ByError(Chooser { noise, controller, .. }) = &self.pacer else { return };
+        if self.stats.accepted >= noise.next && !controller.is_exact() {
             self.see_noise(points, size);
         }
     }
@@ -73,8 +73,7 @@ impl Timeline {
     pub(super) fn is_noise(&mut self, points: &mut dyn AnyPoints, ratio: f64, size: f64) -> bool {
         let Pacer::ByError(Chooser { noise, .. }) = &self.pacer else { return false };
         let is_new = noise.next == self.stats.accepted + noise.every();
-        let is_too_large = self.beyond_noise(ratio, size) > 1.0;
-        if !is_too_large || is_new || !self.may_be_noisy(size) {
+        if is_new || self.beyond_noise(ratio, size) <= 1.0 {
             return false;
         }
         self.see_noise(points, size);
@@ -98,11 +97,14 @@ impl Timeline {
         let (t, forward) = (self.t, self.t1 - self.t);
         let most = Noise::MOST * points.noise_of_time(t, size.copysign(forward)) / size;
         self.stats.evaluations = self.stats.evaluations.map(|n| n + 2);
+        if most.is_nan() || most <= least {
+            return 0.0;
+        }
         let mut seen = 0.0_f64;
         for part in Noise::PARTS {
             let end = t + (part * size).copysign(forward);
             let trial = Step { n: self.stats.accepted, t, h: end - t };
-            if most.is_nan() || most <= least || end == t {
+            if end == t {
                 return 0.0;
             }
             self.attempted(1);

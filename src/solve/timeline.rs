@@ -90,10 +90,12 @@ pub(super) struct Timeline {
 /// The stages of a step to a jump of f are so many rounding units of time before it.
 const MARGIN: f64 = 4.0;
 
-/// A rounding unit of time, in the direction from t to `end`; 0 where a step between them is almost as short as that.
+/// A rounding unit of time, in the direction from t to `end`; 0 where a step between them is almost as short as that, or the
+/// unit has no half.
 fn unit(t: f64, end: f64) -> f64 {
     let unit = f64::EPSILON * t.abs().max(end.abs());
-    if (end - t).abs() > 100.0 * unit { unit.copysign(end - t) } else { 0.0 }
+    let counts = (end - t).abs() > 100.0 * unit && unit >= f64::MIN_POSITIVE;
+    if counts { unit.copysign(end - t) } else { 0.0 }
 }
 
 /// n + more, if both are counted.
@@ -239,7 +241,8 @@ impl Timeline {
         if t != self.jumped_at {
             return Step { n, t: t - MARGIN * unit, h };
         }
-        while unit != 0.0 && t + h == end {
+        // The end of a step of a grid may be a rounding after `end`.
+        while unit != 0.0 && (t + h - end) * unit.signum() >= 0.0 {
             h -= 0.5 * unit;
         }
         Step { n, t, h }

@@ -59,6 +59,30 @@ fn steps_to_jumps_have_their_whole_size() {
     }
 }
 
+/// f jumps at each time of a grid whose times are rounded. No step of this grid has a stage behind the jump at its end.
+#[test]
+fn jumps_at_rounded_times_of_a_grid_are_not_passed() {
+    for (t0, dt) in [(1e6, 0.1), (1e4, 0.01), (100.0, 0.1)] {
+        let n = 200;
+        let times: Vec<f64> = (0..=n).map(|k| t0 + f64::from(k) * dt).collect();
+        let jumps = times.clone();
+        // 1 in even parts, and 2 in odd ones.
+        let flow = Flow::of_time(So3::new(), LeftTranslation, |t, v: &mut Vector3<f64>| {
+            let part = times.partition_point(|time| *time <= t).max(1) - 1;
+            v.z = 1.0 + (part % 2) as f64;
+        });
+        let method = Rkmk::new(DOPRI5, Exp);
+        let span = [t0, times[n as usize]];
+        let solve = Solve::new(&flow, &method, span).dt(dt).stops(jumps);
+        let run = solve.run(Matrix3::identity()).expect("a run");
+        let gap = angle(&run.y) - 1.5 * f64::from(n) * dt;
+        let error = (gap - TAU * (gap / TAU).round()).abs();
+        // Each step misses a rounding of t at most, at a rate of 1.5.
+        let most = 2.0 * f64::from(n) * f64::EPSILON * t0 + 1e-13;
+        assert!(error < most, "{t0} {dt}: {error:e} of {most:e}");
+    }
+}
+
 /// The rounding of t in f is no reason for small steps: a rate of cos t at times of a clock, with tolerances far below that
 /// rounding. There are no more of them than near t = 0, but for a search after 256 steps. The error after 20 s is below that
 /// of an f that is ε·t late.
