@@ -449,17 +449,19 @@ pub struct Drift {
 }
 
 impl Drift {
-    /// Did it move by far more at rows within steps than at the ends of the steps?
+    /// Did it move by far more at rows within steps than at the ends of the steps? Of what the method keeps there to rounding,
+    /// any more.
     pub fn is_of_rows(&self) -> bool {
-        let at_ends = self.max_at_ends_of_steps.map(|at_ends| at_ends.max(self.rounding));
-        at_ends.is_some_and(|at_ends| self.max > OF_ROWS * at_ends)
+        self.max_at_ends_of_steps.is_some_and(|at_ends| {
+            let times = if self.promised && at_ends <= self.rounding { 1.0 } else { OF_ROWS };
+            self.max > times * at_ends.max(self.rounding)
+        })
     }
 
     /// Did it move by more than rounding explains, though the method promises to keep it? The promise is about the ends
     /// of steps.
     pub fn breaks_a_promise(&self) -> bool {
-        let max = self.max_at_ends_of_steps.unwrap_or(self.max);
-        self.promised && (max.is_nan() || max > self.rounding) && !self.is_of_rows()
+        self.promised && (self.max.is_nan() || self.max > self.rounding) && !self.is_of_rows()
     }
 
     /// Did it move by far more than the relative error of the run explains? Then it is no constant of the motion. A formula

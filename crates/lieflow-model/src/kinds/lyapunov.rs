@@ -84,14 +84,8 @@ fn read(mut keys: Keys) -> Result<Forms, ReadError> {
     let jacobian = field.iter().map(by).collect::<Result<Vec<_>, _>>()?.concat();
     let (field, jacobian) = (field.into(), jacobian.into());
     let system = Exponents { names, field, jacobian, x };
-    match Q::taken(&system, system.names.variables()[1..].iter(), &["x"]) {
-        Some((name, quantity)) => {
-            let message =
-                format!("`{name}` is a column of the quantity `{quantity}`, expected another name");
-            Err(Refusal::at("variables", message).into())
-        }
-        None => Ok(Forms::of(system)),
-    }
+    Q::check_names(&system, "variables", &system.names.variables()[1..], &["x"])?;
+    Ok(Forms::of(system))
 }
 
 /// t and x, for formulas.

@@ -3,6 +3,7 @@
 
 use super::kind::{Kept, QuantityInfo};
 use super::system::{PointOf, System};
+use crate::reader::Refusal;
 use crate::schema::{Branch, Component, Dimension, Law, Measure, Numbers, Scale};
 
 /// The columns x11, …, xnk, row by row.
@@ -263,23 +264,30 @@ impl<S: System> Quantity<S> {
         }
     }
 
-    /// The first of these names that is a column of another quantity than these, with the name of that.
-    pub(crate) fn taken<'n>(
+    /// Checks that none of these names, which a scene gives at `key`, is a column of another quantity than its own.
+    ///
+    /// # Errors
+    /// A refusal of the key.
+    pub(crate) fn check_names(
         system: &S,
-        mut names: impl Iterator<Item = &'n String>,
+        key: &str,
+        names: &[String],
         own: &[&str],
-    ) -> Option<(&'n String, &'static str)>
+    ) -> Result<(), Refusal>
     where
         S: System,
     {
         let others = S::QUANTITIES.iter().filter(|quantity| !own.contains(&quantity.info.name));
-        let others = others.filter(|quantity| (quantity.missing)(system).is_none());
-        let columns: Vec<_> =
-            others.map(|quantity| (quantity.info.name, quantity.column_names(system))).collect();
-        names.find_map(|name| {
-            let (quantity, _) = columns.iter().find(|(_, columns)| columns.contains(name))?;
-            Some((name, *quantity))
-        })
+        for other in others.filter(|quantity| (quantity.missing)(system).is_none()) {
+            if let Some(name) = other.column_names(system).iter().find(|c| names.contains(c)) {
+                let quantity = other.info.name;
+                let message = format!(
+                    "`{name}` is a column of the quantity `{quantity}`, expected another name"
+                );
+                return Err(Refusal::at(key, message));
+            }
+        }
+        Ok(())
     }
 
     /// The rows and columns of a quantity that is a matrix, or has the parts of one.

@@ -112,18 +112,11 @@ fn read(mut keys: Keys) -> Result<Forms, ReadError> {
     let composed = Composed { parts, start, invariants: kept, notes };
     // The names of parts and of what they keep are apart already.
     let known = ["state", "vectors", "lengths", "defects", "invariants"];
-    let own = coordinates(composed.parts.iter());
-    let taken = Q::taken(&composed, own.iter(), &known).map(|taken| ("parts", taken));
-    let invariants = composed.invariants.iter().map(|(name, _)| name);
-    let taken = taken.or(Q::taken(&composed, invariants, &known).map(|at| ("invariants", at)));
-    match taken {
-        Some((key, (name, quantity))) => {
-            let message =
-                format!("`{name}` is a column of the quantity `{quantity}`, expected another name");
-            Err(Refusal::at(key, message).into())
-        }
-        None => Ok(Forms::of(composed)),
-    }
+    Q::check_names(&composed, "parts", &coordinates(composed.parts.iter()), &known)?;
+    let invariants: Vec<String> =
+        composed.invariants.iter().map(|(name, _)| name.clone()).collect();
+    Q::check_names(&composed, "invariants", &invariants, &known)?;
+    Ok(Forms::of(composed))
 }
 
 /// The invariants, whose names are none of those that are taken.
