@@ -4,7 +4,7 @@
 use super::*;
 use faer::{Mat, mat};
 use lieflow::actions::Lagrangian;
-use lieflow::floquet::{Floquet, monodromy};
+use lieflow::floquet::{Floquet, Stability, monodromy};
 use lieflow::groups::{AlgebraMatrix, GroupMatrix, LieGroup, MatrixGroup};
 use lieflow::methods::magnus::{Magnus4, Magnus6, Magnus8};
 use lieflow::problems::beam::{Element, transfer_map, tunes};
@@ -70,6 +70,67 @@ fn hills_multipliers() {
     let again = monodromy(&hill(2, stiffness).unwrap(), &rkmk, [0.0, PI], 1000).unwrap();
     assert!((&*again - &*m).norm_l2() < 1e-9);
     assert!(hill(0, stiffness).is_err() && mathieu(f64::NAN, 1.0).is_err());
+}
+
+/// Near tr M = ±2 the growth has the digits of M ∓ 𝟙. References: Taylor series of degree 50 with 40 digits.
+#[test]
+fn weak_instability() {
+    for (a, q, growth) in [
+        (4.0, 1e-4, 1.463503068931247e-9),
+        (4.0, 1e-3, 1.4635030654096912e-7),
+        (1.0, 1e-6, 1.5707963267947125e-6),
+        (9.0, 1e-2, 0.0),
+        (9.0, 1e-3, 0.0),
+    ] {
+        let m = monodromy(&mathieu(a, q).unwrap(), &Magnus6, [0.0, PI], 1000).unwrap();
+        let found = Stability::of(&m, 1e-13).unwrap();
+        assert!((found.growth - growth).abs() <= 1e-4 * growth, "a = {a}, q = {q}: {found:?}");
+        assert_eq!(found.is_bounded, growth == 0.0, "a = {a}, q = {q}");
+    }
+}
+
+/// Where multipliers meet, powers of M decide: a double one with one vector lets solutions grow with the periods.
+#[test]
+fn multipliers_that_meet() {
+    let stability = |m: Mat<f64>| Stability::of(&m, 1e-13).unwrap();
+    // Two oscillators with the frequencies x and y, or a free mass where one is 0.
+    let two = |x: f64, y: f64, shear: f64| {
+        Mat::from_fn(4, 4, |i, j| {
+            let w = [x, y][i % 2];
+            match (i / 2, j / 2) {
+                _ if i % 2 != j % 2 => 0.0,
+                (0, 1) if w == 0.0 => shear,
+                (0, 1) => w.sin(),
+                (1, 0) => -w.sin(),
+                _ => w.cos(),
+            }
+        })
+    };
+    for (m, growth, is_bounded) in [
+        (mat![[1.0, 0.3], [0.0, 1.0]], 0.0, false),
+        (mat![[-1.0, 0.0], [0.0, -1.0]], 0.0, true),
+        (mat![[-1.0, 1e-15], [1e-15, -1.0]], 0.0, true),
+        (two(1.0, 1.0, 0.0), 0.0, true),
+        (two(0.0, 1.0, 1.0), 0.0, false),
+        (two(0.0, 1.0, 1e-5), 0.0, false),
+        (mat![[2.0, 0.0], [0.0, 0.5]], 2f64.ln(), false),
+        (mat![[1e200, 0.0], [0.0, 1e-200]], 1e200f64.ln(), false),
+    ] {
+        let found = stability(m.clone());
+        let is_right = (found.growth - growth).abs() < 1e-12 && found.is_bounded == is_bounded;
+        assert!(is_right, "{m:?}: {found:?}");
+    }
+    // An oscillator beside a mode that grows by 10⁻⁷ a period.
+    let slow = 1e-7f64;
+    let mut m = two(1.0, 1.0, 0.0);
+    for (i, j, x) in
+        [(1, 1, slow.cosh()), (1, 3, slow.sinh()), (3, 1, slow.sinh()), (3, 3, slow.cosh())]
+    {
+        m[(i, j)] = x;
+    }
+    let found = stability(m);
+    assert!((found.growth - slow).abs() < 1e-3 * slow && !found.is_bounded, "{found:?}");
+    assert!(Stability::of(&mat![[f64::NAN, 0.0], [0.0, 1.0]], 0.0).is_err());
 }
 
 #[test]

@@ -3,15 +3,14 @@
 
 use core::f64::consts::{PI, TAU};
 
-use lieflow::floquet::{Floquet, monodromy};
+use lieflow::floquet::{Stability, monodromy};
 use lieflow::groups::AlgebraMatrix;
 use lieflow::methods::magnus::Magnus6;
-use lieflow::problems::{LinearHamiltonian, hill};
+use lieflow::problems::{LinearHamiltonian, explained_by_rounding, hill};
 use lieflow::scalar::{Ops, tally};
 
 use super::entries::{
-    self, check_symmetric, numbered, power, rows, symmetric, symmetric_part, symplectic_defect,
-    trace,
+    self, check_symmetric, numbered, rows, symmetric, symmetric_part, symplectic_defect, trace,
 };
 use super::flow::OnMatrices;
 use super::matrix::MatrixAction;
@@ -72,14 +71,14 @@ fn read_hill(keys: HillKeys) -> Result<Forms, ReadError> {
     Ok(Forms::of(Hill { a: symmetric_part(&a), q, period }))
 }
 
-/// Steps over the period of the monodromy in the facts: it is exact to rounding where a period has a few
-/// oscillations.
-const STEPS: u64 = 1000;
-/// A multiplier counts as outside of the unit circle from this distance on: where two meet on it, rounding in the
-/// monodromy moves them by its root.
-const OFF_THE_CIRCLE: f64 = 1e-6;
-/// Multipliers so near to the circle are on it.
-const ROUNDING: f64 = 1e-12;
+/// Steps over the period of the monodromy in the facts, at least and at most.
+const STEPS: [f64; 2] = [1000.0, 200_000.0];
+/// The largest phase of the fastest oscillation in such a step. The error of the sixth order is rounding there.
+const PHASE: f64 = 0.1;
+/// Beside the monodromy in half as many steps its error is this part of the difference.
+const OF_HALF: f64 = 1.0 / 63.0;
+/// A larger relative error of the monodromy tells nothing of its multipliers.
+const UNKNOWN: f64 = 1e-3;
 
 impl Hill {
     fn equation(
@@ -92,19 +91,33 @@ impl Hill {
         })
     }
 
-    /// The multipliers of a period from t = 0, the trace of its monodromy, and whether the powers of that stay bounded.
-    fn multipliers(&self) -> Option<(Floquet, f64, bool)> {
-        let g = monodromy(&self.equation().ok()?, &Magnus6, [0.0, self.period], STEPS).ok()?;
-        Some((Floquet::of(&g).ok()?, trace(&g), stays_bounded(g.as_ref().to_owned())))
+    /// The monodromy of the period from t = 0, with velocities in units in which the fastest oscillation turns a circle, and
+    /// the error of its entries. None, if that is too large.
+    fn monodromy(&self) -> Option<(Mat<f64>, f64)> {
+        let fastest = (self.a.norm_l2() + 2.0 * self.q.norm_l2()).sqrt();
+        let steps = (fastest * self.period / PHASE).clamp(STEPS[0], STEPS[1]) as u64;
+        let equation = self.equation().ok()?;
+        let unit = fastest.max(self.period.recip());
+        let by = |steps| {
+            let g = monodromy(&equation, &Magnus6, [0.0, self.period], steps).ok()?;
+            Some(in_velocity_units(&g, unit))
+        };
+        let (coarse, fine) = (by(steps / 2)?, by(steps)?);
+        let of_steps = OF_HALF * (&fine - &coarse).norm_max();
+        let size = fine.norm_max();
+        let error = of_steps.max(explained_by_rounding(steps, size));
+        (error < UNKNOWN * size).then_some((fine, error))
     }
 }
 
-/// Do the powers of a monodromy stay bounded? Where two multipliers meet on the circle, they may grow as the number of
-/// periods. From so many on, the distances of multipliers that count as one do not matter.
-fn stays_bounded(monodromy: Mat<f64>) -> bool {
-    let many = power(monodromy, 1 << 20);
-    let more = power(many.clone(), 1 << 10);
-    more.norm_max() < 30.0 * many.norm_max()
+/// A map of (x, ẋ) as one of (x, ẋ/unit).
+fn in_velocity_units(g: &Mat<f64>, unit: f64) -> Mat<f64> {
+    let m = g.nrows() / 2;
+    Mat::from_fn(2 * m, 2 * m, |i, j| match (i < m, j < m) {
+        (true, false) => g[(i, j)] * unit,
+        (false, true) => g[(i, j)] / unit,
+        _ => g[(i, j)],
+    })
 }
 
 impl System for Hill {
@@ -142,17 +155,21 @@ impl System for Hill {
         Figure::Lines("solution")
     }
     fn facts(&self) -> Vec<Property> {
-        let Some((floquet, trace, is_bounded)) = self.multipliers() else { return Vec::new() };
-        let radius = floquet.spectral_radius();
-        // Rounding of the multipliers is no growth.
-        let is_one = (radius - 1.0).abs() < ROUNDING;
-        let growth = if is_one { 0.0 } else { floquet.growth(self.period) };
+        let found = self.monodromy().and_then(|(monodromy, error)| {
+            Some((trace(&monodromy), Stability::of(&monodromy, error).ok()?))
+        });
+        let Some((trace, Stability { growth, is_bounded })) = found else {
+            return vec![
+                Property::of("period", self.period),
+                Property::of("growth_rate", f64::NAN),
+            ];
+        };
         vec![
             Property::of("period", self.period),
             Property::of("trace_of_the_monodromy", trace),
-            Property::of("largest_multiplier", radius),
-            Property::of("growth_rate", growth),
-            Property::answer("stable", radius < 1.0 + OFF_THE_CIRCLE && is_bounded),
+            Property::of("largest_multiplier", growth.exp()),
+            Property::of("growth_rate", growth / self.period),
+            Property::answer("stable", is_bounded),
         ]
     }
 }

@@ -94,6 +94,18 @@ fn a_translation_is_not_stable() {
         let of = scene(&problem, "name = \"magnus6\"", "t_span = [0, 2]\ndt = 0.1", "[\"map\"]");
         assert_eq!(fact(&of, "stable"), stable, "{a}");
     }
+    // At a characteristic value, between two bands, and with many oscillations in a period.
+    for (a, q, stable) in [
+        ("-0.45513860410741355", "1", 0.0),
+        ("4", "1e-4", 0.0),
+        ("9", "1e-2", 1.0),
+        ("1e6", "1", 1.0),
+    ] {
+        let problem = format!("kind = \"mathieu\"\na = {a}\nq = {q}");
+        let of = scene(&problem, "name = \"magnus6\"", "t_span = [0, 2]\ndt = 0.1", "[\"map\"]");
+        assert_eq!(fact(&of, "stable"), stable, "{a} {q}");
+        assert_eq!(fact(&of, "growth_rate") > 0.0, (a, q) == ("4", "1e-4"), "{a} {q}");
+    }
     let free = "kind = \"mathieu\"\na = 0\nq = 0";
     let of = scene(free, "name = \"magnus6\"", "t_span = [0, 2]\ndt = 0.1", "[\"map\"]");
     assert_eq!(fact(&of, "stable"), 0.0);
