@@ -231,7 +231,7 @@ fn still_to_take(left: f64, h: f64) -> String {
 fn reason(source: &Option<StepError>, is_lost: bool) -> String {
     match source {
         Some(error) => error.to_string(),
-        None if is_lost => "t + h is t after rounding; let the times begin near 0".into(),
+        None if is_lost => "t + h is t after rounding, as beside a jump or a pole of f".into(),
         None => "the error stays above the tolerance".into(),
     }
 }

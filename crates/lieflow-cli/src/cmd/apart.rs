@@ -53,6 +53,15 @@ pub(super) struct Gap {
     pub(super) relative: f64,
 }
 
+/// The size of a part of the state in a run.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Size {
+    /// That of the start, of the end or of the middle one of the rows, the largest. Errors are relative to it.
+    pub(super) largest: f64,
+    /// That of the middle one of the rows, in the order of their sizes.
+    pub(super) middle: f64,
+}
+
 /// How far a column is from what it should be.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct ColumnApart {
@@ -71,6 +80,8 @@ pub(super) struct Largest {
     pub(super) t: f64,
     /// The last one.
     pub(super) last: Gap,
+    /// The largest distance in sizes of the middle row, or of the row where that is larger.
+    pub(super) of_middle: f64,
 }
 
 impl Largest {
@@ -128,7 +139,8 @@ impl ZerosApart {
 impl Apart {
     /// No rows yet, and this number of events.
     fn new(watch: &Watch<'_>, events: usize) -> Self {
-        let none = Largest { gap: Gap::default(), t: f64::NAN, last: Gap::default() };
+        let none =
+            Largest { gap: Gap::default(), t: f64::NAN, last: Gap::default(), of_middle: 0.0 };
         let parts = parts_of(watch).map(|_| none).collect();
         let columns = parts_of(watch)
             .map(|(_, part)| vec![ColumnApart::default(); part.columns.len()])
@@ -140,7 +152,7 @@ impl Apart {
     /// The distances of rows from others, each pair with its time.
     pub(super) fn of_rows<'r>(
         watch: &Watch<'_>,
-        sizes: &[f64],
+        sizes: &[Size],
         pairs: impl Iterator<Item = (f64, [&'r [f64]; 2])>,
     ) -> Self {
         let mut apart = Apart::new(watch, 0);
@@ -196,7 +208,7 @@ impl Apart {
     }
 
     /// The next row of both; the parts of the state have these sizes.
-    fn see(&mut self, watch: &Watch<'_>, sizes: &[f64], t: f64, [a, b]: [&[f64]; 2]) {
+    fn see(&mut self, watch: &Watch<'_>, sizes: &[Size], t: f64, [a, b]: [&[f64]; 2]) {
         let [a, b] = [a, b].map(|numbers| watch.model.schema().row(numbers));
         self.rows += 1;
         let laws = watch.laws.iter().flat_map(|law| a[*law].iter().zip(&b[*law]));
@@ -210,13 +222,14 @@ impl Apart {
                 column.size = column.size.max(a.abs());
             }
             let absolute = part.measure.distance(a, b);
-            let relative = match absolute {
+            // Where the part is larger than elsewhere, so may be its error.
+            let in_sizes = |size: f64| match absolute {
                 0.0 => 0.0,
                 angle if part.measure.is_angle() => angle,
-                // Where the part is larger than elsewhere, so may be its error.
                 length => length / size.max(norm(a)),
             };
-            largest.see(t, Gap { absolute, relative });
+            largest.see(t, Gap { absolute, relative: in_sizes(size.largest) });
+            largest.of_middle = larger(largest.of_middle, in_sizes(size.middle));
         }
     }
 }
@@ -434,7 +447,7 @@ mod tests {
             records: wrong.state.shown().unwrap(),
             rows: Choice::new(wrong.rows as u64, 1000),
             zeros: Choice::new(wrong.zeros as u64, 1000),
-            sizes: vec![1.0],
+            sizes: vec![Size { largest: 1.0, middle: 1.0 }],
             t_span: [0.0, 60.0],
             direction: 1.0,
             step: stats.largest_step,
@@ -452,7 +465,7 @@ mod tests {
     #[test]
     fn a_wrong_row_and_a_wrong_zero_are_found() {
         for apart in apart("wrong", 1e-3, Some(1e-4)) {
-            let Largest { gap, t, last } = apart.parts[0];
+            let Largest { gap, t, last, .. } = apart.parts[0];
             assert_eq!((apart.rows, t), (121, 15.0));
             assert!((gap.absolute - 1e-3).abs() < 1e-9, "{gap:?}");
             assert!(last.absolute < 1e-9, "{last:?}");
@@ -478,7 +491,7 @@ mod tests {
     #[test]
     fn a_distance_that_is_no_number_stays() {
         let gap = |x: f64| Gap { absolute: x, relative: x };
-        let mut largest = Largest { gap: gap(0.0), t: 0.0, last: gap(0.0) };
+        let mut largest = Largest { gap: gap(0.0), t: 0.0, last: gap(0.0), of_middle: 0.0 };
         for (t, x) in [(1.0, 2.0), (2.0, f64::NAN), (3.0, 5.0)] {
             largest.see(t, gap(x));
         }

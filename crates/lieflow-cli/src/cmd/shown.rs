@@ -8,6 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use lieflow::solve::LONG_STEPS;
 use lieflow_model::problem::EventPlan;
 
+use super::apart::Size;
 use super::watch::Watch;
 use crate::output::{Kind, Records, ShownRows};
 
@@ -46,7 +47,7 @@ pub(super) struct Shown<'a> {
     pub(super) rows: Choice,
     pub(super) zeros: Choice,
     /// The size of each part of the state.
-    pub(super) sizes: Vec<f64>,
+    pub(super) sizes: Vec<Size>,
     /// The start and the end of the run.
     pub(super) t_span: [f64; 2],
     /// 1, or −1 where time runs backward.

@@ -44,6 +44,31 @@ fn columns_without_a_right_digit_are_told() {
     }
 }
 
+/// A state that is small in most rows has fewer digits there than beside its start, and that is told.
+#[test]
+fn a_state_that_becomes_small_has_fewer_digits() {
+    let folder = Folder::new();
+    let run = |rtol: &str, field: &str| {
+        folder.write(
+            "scene.toml",
+            &format!(
+                "[problem]\nkind = \"composed\"\n[[problem.parts]]\nname = \"b\"\nspace = \"numbers\"\nstart = [1, 1, 0]\n\
+                 field = {field}\n[method]\nname = \"rk dopri5\"\n[time]\nt_span = [0, 30]\nrtol = {rtol}\n"
+            ),
+        );
+        folder.lieflow(&["run", "scene.toml", "--out", "out"]).ok()
+    };
+    let decay = "[\"-b1\", \"4*b3 - b2\", \"-4*b2 - b3\"]";
+    let told = "note: `b` has fewer right digits in most rows: its size is ";
+    let out = run("1e-5\natol = 1e-5", decay);
+    assert!(out.contains(told) && out.contains("The error above is relative to 1.4"), "{out}");
+    let turns = "[\"0\", \"4*b3\", \"-4*b2\"]";
+    for (rtol, field) in [("1e-5", turns), ("1e-10", decay)] {
+        let out = run(rtol, field);
+        assert!(!out.contains("has fewer right digits"), "{field}: {out}");
+    }
+}
+
 /// An invariant whose value is 0 moves by the error of the run: that is no reason to doubt it.
 #[test]
 fn an_invariant_of_0_is_not_doubted() {

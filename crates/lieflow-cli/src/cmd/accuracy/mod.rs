@@ -18,7 +18,9 @@ use lieflow_model::scene::Scene;
 use lieflow_model::schema::{Component, Observable, Row};
 use lieflow_timing::cpu_seconds;
 
-use super::apart::{Apart, Beside, ColumnApart, Gap, Largest, Limits, ZerosApart, norm, parts_of};
+use super::apart::{
+    Apart, Beside, ColumnApart, Gap, Largest, Limits, Size, ZerosApart, norm, parts_of,
+};
 use super::shown::{Choice, Shown};
 use super::watch::Watch;
 use crate::output::{Accuracy, Distance, FoundBy, PartError, RowSample, ShownRows, number, rough};
@@ -42,6 +44,10 @@ const NO_DIGIT: f64 = 0.1;
 const KNOWN: f64 = 0.01;
 /// And where the column is this many times larger than the rounding of its part.
 const AMPLE: f64 = 100.0;
+/// A part that has this many times the relative error at the size of most rows is worth a note, where that is above
+/// [`FEW_DIGITS`].
+const SMALLER: f64 = 100.0;
+const FEW_DIGITS: f64 = 1e-6;
 /// A tolerance this small is compared with a larger one: a smaller one is rounding.
 const SMALLEST: f64 = 1e-13;
 
@@ -244,9 +250,33 @@ impl<'a> Check<'a> {
             (accuracy, time_errors) = (other, vec![None; time_errors.len()]);
             warnings.push(warning);
         }
-        let notes = self.small_columns(&apart, share);
+        let mut notes = self.small_rows(&apart, share);
+        notes.extend(self.small_columns(&apart, share));
         let laws = apart.laws.iter().map(|gap| gap * share).collect();
         Ok(Checked { accuracy, time_errors, wrong_zeros, other_zeros, laws, notes, warnings })
+    }
+
+    /// The parts that are much smaller in most rows than at an end, and have few digits there, in words.
+    fn small_rows(&self, apart: &Apart, share: f64) -> Vec<String> {
+        let told = |(place, (observable, part)): (usize, (&Observable, &Component))| {
+            let (largest, Size { largest: size, middle }) =
+                (&apart.parts[place], self.run.sizes[place]);
+            let [known, there] = [largest.gap.relative, largest.of_middle].map(|x| x * share);
+            let rounding = AMPLE * explained_by_rounding(self.own.steps, size);
+            let is_told =
+                known < KNOWN && there > FEW_DIGITS.max(SMALLER * known) && middle > rounding;
+            let whole = if part.name.is_empty() { observable.name } else { &part.name };
+            is_told.then(|| {
+                format!(
+                    "`{whole}` has fewer right digits in most rows: its size is {} in the middle one of them, and the \
+                     largest error beside that is {}. The error above is relative to {}",
+                    rough(middle),
+                    rough(there),
+                    rough(size)
+                )
+            })
+        };
+        parts_of(self.watch).enumerate().filter_map(told).collect()
     }
 
     /// The columns that are so small beside their part that they have no right digit, in words. The error of a part is
@@ -254,7 +284,8 @@ impl<'a> Check<'a> {
     fn small_columns(&self, apart: &Apart, share: f64) -> Vec<String> {
         let told = |(place, (observable, part)): (usize, (&Observable, &Component))| {
             let (largest, columns) = (&apart.parts[place], &apart.columns[place]);
-            let rounding = AMPLE * explained_by_rounding(self.own.steps, self.run.sizes[place]);
+            let rounding =
+                AMPLE * explained_by_rounding(self.own.steps, self.run.sizes[place].largest);
             let is_poor = |column: &ColumnApart| column.gap * share > column.size * NO_DIGIT;
             let names = observable.columns[part.columns.clone()].iter().zip(columns);
             let mut poor = names.filter(|(_, column)| is_poor(column) && column.size > rounding);
@@ -482,7 +513,7 @@ impl<'a> Check<'a> {
     /// The errors of a run: a share of the distances.
     fn judge(&self, found_by: FoundBy, apart: &Apart, share: f64, clock: Instant) -> Accuracy {
         let all = parts_of(self.watch).zip(&apart.parts);
-        let parts = all.map(|((observable, part), &Largest { gap, t, last })| {
+        let parts = all.map(|((observable, part), &Largest { gap, t, last, .. })| {
             let error = |Gap { absolute, relative }: Gap| {
                 let is_angle = part.measure.is_angle();
                 // No two rotations are farther apart than half a turn.
@@ -511,12 +542,13 @@ impl<'a> Check<'a> {
         let (rows, taken) = self.rows_at(way, times).ok()?;
         // The rows of a run that blew up are larger than the motion.
         let schema = self.watch.model.schema();
-        let sizes: Vec<f64> = parts_of(self.watch)
+        let sizes: Vec<Size> = parts_of(self.watch)
             .zip(&self.run.sizes)
             .map(|((observable, part), size)| {
                 let norms =
                     rows.iter().map(|row| norm(&schema.row(row)[observable][part.columns.clone()]));
-                size.min(norms.fold(0.0, f64::max))
+                let largest = norms.fold(0.0, f64::max);
+                Size { largest: size.largest.min(largest), middle: size.middle.min(largest) }
             })
             .collect();
         let apart = |others: &[Vec<f64>]| {
@@ -537,14 +569,14 @@ impl<'a> Check<'a> {
     }
 }
 
-/// The size that an error is relative to: of the start, of the end and of the middle one of the rows, the largest.
-fn size((observable, part): (&Observable, &Component), rows: &RowSample<'_>) -> f64 {
+/// The size of a part in these rows.
+fn size((observable, part): (&Observable, &Component), rows: &RowSample<'_>) -> Size {
     let norm = |row: Row<'_>| norm(&row[observable][part.columns.clone()]);
     let mut sizes: Vec<f64> = rows.rows().map(|(_, row)| norm(row)).collect();
     let ends = rows.ends().map_or([0.0; 2], |ends| ends.map(|(_, row)| norm(row)));
     sizes.sort_by(f64::total_cmp);
     let middle = sizes.get(sizes.len() / 2).copied().unwrap_or(0.0);
-    ends[0].max(ends[1]).max(middle)
+    Size { largest: ends[0].max(ends[1]).max(middle), middle }
 }
 
 /// Keeps the rows of a run, and stops the run when its time is up.

@@ -78,6 +78,10 @@ impl Vorticity {
                 let start = self.start(&fluid)?;
                 (Place::Sphere(fluid), start)
             }
+            _ if n.is_multiple_of(2) => {
+                let message = format!("n = {n}, expected an odd number, 3 to {}", N_MAX - 1);
+                return Err(Refusal::at("n", message).into());
+            }
             _ => {
                 let fluid = Zeitlin::torus(n).map_err(no_surface)?;
                 let start = self.start(&fluid)?;
