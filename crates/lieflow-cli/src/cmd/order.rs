@@ -82,7 +82,7 @@ pub fn run(args: &OrderArgs) -> Result<(), CliError> {
         let mut curve = Curve { candidate, label, order, stays, floor, points: Vec::new() };
         let clock = std::time::Instant::now();
         for &steps in &steps {
-            let point = judge.point(&model, &curve.candidate, t_span, Size::Steps(steps));
+            let point = judge.point(&model, &curve.candidate, Size::Steps(steps));
             super::stop::ended(&stop)?;
             curve.points.push(point);
             if clock.elapsed() > LONGEST {

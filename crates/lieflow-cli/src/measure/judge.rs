@@ -2,7 +2,7 @@
 
 use lieflow::catalog::MethodSpec;
 use lieflow::problems::Origin;
-use lieflow::solve::Status;
+use lieflow::solve::{Status, Stops};
 use lieflow::tolerance::Rule;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
@@ -15,7 +15,7 @@ use lieflow_counting::operations;
 use lieflow_figures::number::typed;
 use lieflow_model::problem::{Model, Plan, Rows as Watched, Sink, Steps};
 use lieflow_model::scene::Scene;
-use lieflow_model::schema::{Observable, Row, Schema};
+use lieflow_model::schema::{Component, Observable, Row, Schema};
 use lieflow_timing::cpu_seconds;
 
 /// Where the end comes from that errors are measured against.
@@ -109,10 +109,53 @@ fn reference_methods() -> Vec<MethodSpec> {
     ]
 }
 
+/// A span, and how the steps of a scene are bounded in it.
+#[derive(Clone, Debug)]
+pub struct Course {
+    /// The span.
+    pub t_span: [f64; 2],
+    /// The times at which a step of one size ends.
+    stops: Stops,
+    /// The same of steps that are chosen by their error.
+    stops_by_error: Stops,
+    /// The limit of steps that are chosen by their error.
+    largest: Option<f64>,
+    /// The limit of attempts.
+    max_steps: Option<u64>,
+}
+
+impl Course {
+    /// The span without bounds.
+    pub fn free(t_span: [f64; 2]) -> Self {
+        let none = Stops::default;
+        Course { t_span, stops: none(), stops_by_error: none(), largest: None, max_steps: None }
+    }
+
+    /// The span with the bounds of a scene.
+    fn of(scene: &Scene, t_span: [f64; 2]) -> Self {
+        Course {
+            t_span,
+            stops: scene.stops_of(false, t_span),
+            stops_by_error: scene.stops_of(true, t_span),
+            largest: scene.largest_step(),
+            max_steps: scene.max_steps,
+        }
+    }
+
+    /// Tolerances relative to the length of the step, and the limits. The error of a run then follows rtol, whatever the
+    /// order of the method.
+    fn control(&self, rtol: f64, atol: f64) -> Result<StepControl, lieflow::Error> {
+        let control = StepControl::new(rtol, atol)?.rule(Rule::PerLength);
+        self.largest.map_or(Ok(control.clone()), |h| control.max_step(h))
+    }
+}
+
 /// The exact end of a run, with the quantities that a run is judged by.
 #[derive(Debug)]
 pub struct Judge<'a> {
     state: &'static [&'static str],
+    /// The span.
+    pub course: Course,
     /// The state and the invariants.
     schema: Schema,
     end: Vec<f64>,
@@ -142,16 +185,16 @@ impl<'a> Judge<'a> {
         longest: Duration,
         stop: &'a AtomicBool,
     ) -> Result<Self, CliError> {
-        let (mut judge, model) = Self::without_end(scene, quantities, stop)?;
+        let (mut judge, model) = Self::without_end(scene, quantities, t_span, stop)?;
         match model.exact(t_span) {
             Some(Ok(exact)) => {
                 judge.end = exact;
                 let at = |t: f64| Some((t, model.exact([t_span[0], t])?.ok()?));
                 judge.within = times_within(t_span).into_iter().filter_map(at).collect();
-                let rounding = judge.rounding(&model, t_span, steps, longest);
+                let rounding = judge.rounding(&model, steps, longest);
                 judge.reference = Reference::Exact { rounding };
             }
-            _ => judge.find_end(&model, t_span)?,
+            _ => judge.find_end(&model)?,
         }
         Ok(judge)
     }
@@ -166,8 +209,8 @@ impl<'a> Judge<'a> {
         t_span: [f64; 2],
         stop: &'a AtomicBool,
     ) -> Result<Self, CliError> {
-        let (mut judge, model) = Self::without_end(scene, quantities, stop)?;
-        judge.find_end(&model, t_span)?;
+        let (mut judge, model) = Self::without_end(scene, quantities, t_span, stop)?;
+        judge.find_end(&model)?;
         Ok(judge)
     }
 
@@ -175,6 +218,7 @@ impl<'a> Judge<'a> {
     fn without_end(
         scene: &Scene,
         quantities: &[&str],
+        t_span: [f64; 2],
         stop: &'a AtomicBool,
     ) -> Result<(Self, Model), CliError> {
         let state = scene.problem.state(quantities);
@@ -183,11 +227,13 @@ impl<'a> Judge<'a> {
         let layer = scene.problem.layers().first().copied().unwrap_or(scene.layer);
         let model = scene.model_with(layer, &judged)?;
         let (schema, reference) = (model.schema().clone(), Reference::Exact { rounding: None });
-        Ok((Judge { state, schema, end: Vec::new(), within: Vec::new(), reference, stop }, model))
+        let (end, within, course) = (Vec::new(), Vec::new(), Course::of(scene, t_span));
+        Ok((Judge { state, course, schema, end, within, reference, stop }, model))
     }
 
-    fn find_end(&mut self, model: &Model, t_span: [f64; 2]) -> Result<(), CliError> {
-        let control = per_length(TIGHT, TIGHT)?.max_steps(10_000_000)?;
+    fn find_end(&mut self, model: &Model) -> Result<(), CliError> {
+        let t_span = self.course.t_span;
+        let control = self.course.control(TIGHT, TIGHT)?.max_steps(10_000_000)?;
         let mut ends: Vec<(String, Vec<f64>)> = Vec::new();
         let [t0, t1] = t_span;
         let times = [&[t0], &times_within(t_span)[..], &[t1]].concat();
@@ -195,7 +241,8 @@ impl<'a> Judge<'a> {
             let (mut rows, cancel) = (Vec::new(), Some(self.stop));
             let steps = Steps::ByError { t_span, control: control.clone() };
             let save = SaveAt::Times(times.clone());
-            let plan = Plan { cancel, times_by_steps: true, ..Plan::new(steps, save) };
+            let stops = self.course.stops_by_error.clone();
+            let plan = Plan { cancel, stops, times_by_steps: true, ..Plan::new(steps, save) };
             let mut see = |t: f64, row: Row<'_>| rows.push((t, row.values().to_vec()));
             match model.drive(&method, plan, &mut Watched(&mut see)) {
                 Ok(outcome) if outcome.status == Status::Cancelled => {
@@ -229,13 +276,7 @@ impl<'a> Judge<'a> {
 
     /// How far from its end the exact motion comes in several steps, and in as many as other methods take. One
     /// number of steps may meet calm moments only.
-    fn rounding(
-        &self,
-        model: &Model,
-        t_span: [f64; 2],
-        steps: &[u64],
-        longest: Duration,
-    ) -> Option<Rounding> {
+    fn rounding(&self, model: &Model, steps: &[u64], longest: Duration) -> Option<Rounding> {
         let mut numbers = [&PARTS, steps].concat();
         numbers.retain(|steps| *steps > 1);
         numbers.sort_unstable();
@@ -246,7 +287,8 @@ impl<'a> Judge<'a> {
             let exact = MethodSpec::new("exact", None);
             let size = Size::Steps(steps);
             let rows = &Rows::ENDS;
-            size.run(model, &exact, (t_span, t_span[1]), rows, Some(self.stop), &mut see).ok()?;
+            let whole = (&self.course, self.course.t_span[1]);
+            size.run(model, &exact, whole, rows, Some(self.stop), &mut see).ok()?;
             let before = worst.map_or(0.0, |worst: Rounding| worst.apart);
             let apart = Some(self.error(&last)).filter(|apart| apart.is_finite())?;
             worst = Some(Rounding { apart: before.max(apart), steps });
@@ -273,13 +315,8 @@ impl<'a> Judge<'a> {
     }
 
     /// Run once, and judge.
-    pub fn point(
-        &self,
-        model: &Model,
-        candidate: &Candidate,
-        t_span: [f64; 2],
-        size: Size,
-    ) -> WorkPoint {
+    pub fn point(&self, model: &Model, candidate: &Candidate, size: Size) -> WorkPoint {
+        let t_span = self.course.t_span;
         let (mut first, mut last) = (Vec::new(), Vec::new());
         let mut see = |_: f64, row: Row<'_>| {
             if first.is_empty() {
@@ -289,7 +326,7 @@ impl<'a> Judge<'a> {
         };
         let mut point = WorkPoint::new(t_span, size);
         let method = &candidate.method;
-        let whole = (t_span, t_span[1]);
+        let whole = (&self.course, t_span[1]);
         let outcome = size.run(model, method, whole, &Rows::ENDS, Some(self.stop), &mut see);
         match outcome {
             Ok(done) => {
@@ -326,20 +363,14 @@ impl<'a> Judge<'a> {
 
     /// Takes the largest error within the span as that of a run of few steps, where the errors of its steps cancel at the
     /// end: by runs to two times within.
-    pub fn look_within(
-        &self,
-        model: &Model,
-        method: &MethodSpec,
-        t_span: [f64; 2],
-        point: &mut WorkPoint,
-    ) {
+    pub fn look_within(&self, model: &Model, method: &MethodSpec, point: &mut WorkPoint) {
         if point.failure.is_some() || point.steps >= FEW {
             return;
         }
         let at = |(t, state): &(f64, Vec<f64>)| {
             let mut last = Vec::new();
             let mut see = |_: f64, row: Row<'_>| last = row.values().to_vec();
-            let (to, ends) = ((t_span, *t), &Rows::ENDS);
+            let (to, ends) = ((&self.course, *t), &Rows::ENDS);
             match point.size.run(model, method, to, ends, Some(self.stop), &mut see) {
                 Ok(_) => self.error_from(state, &last),
                 Err(_) => 0.0,
@@ -356,29 +387,29 @@ impl<'a> Judge<'a> {
         self.error_from(&self.end, values)
     }
 
-    /// The largest relative distance of a part of the state from `right`. A part that passes zero has the size of the end.
+    /// The largest relative distance of a part of the state from `right`, as a run states it: that of a rotation is an
+    /// angle. A part that passes zero has the size of the end.
     fn error_from(&self, right: &[f64], values: &[f64]) -> f64 {
         let [row, right, end] = [values, right, &self.end].map(|values| self.schema.row(values));
-        let part = |part: &Observable| {
-            let gap: Vec<f64> = row[part].iter().zip(&right[part]).map(|(x, e)| x - e).collect();
-            relative(norm(&gap), norm(&right[part]).max(norm(&end[part])))
+        let error = |(observable, part): (&Observable, &Component)| {
+            let [x, right, end] =
+                [&row, &right, &end].map(|row| &row[observable][part.columns.clone()]);
+            let distance = part.measure.distance(x, right);
+            let size = if part.measure.is_angle() { 1.0 } else { norm(right).max(norm(end)) };
+            relative(distance, size)
         };
         // A part that is no number has left the solution: `f64::max` would forget it.
         let worst = |a: f64, b: f64| if a >= b || a.is_nan() { a } else { b };
         let state = self.schema.iter().filter(|part| self.state.contains(&part.name));
-        state.map(part).fold(0.0, worst)
+        let parts = state
+            .flat_map(|observable| observable.parts.iter().map(move |part| (observable, part)));
+        parts.map(error).fold(0.0, worst)
     }
 }
 
 /// The times of [`WITHIN`].
 fn times_within([t0, t1]: [f64; 2]) -> [f64; 2] {
     WITHIN.map(|part| t0 + part * (t1 - t0))
-}
-
-/// Tolerances relative to the length of the step. The error of a run then follows rtol, whatever the order of the
-/// method.
-fn per_length(rtol: f64, atol: f64) -> Result<StepControl, lieflow::Error> {
-    Ok(StepControl::new(rtol, atol)?.rule(Rule::PerLength))
 }
 
 fn relative(gap: f64, size: f64) -> f64 {
@@ -435,16 +466,17 @@ impl Size {
         self,
         model: &Model,
         method: &MethodSpec,
-        t_span: [f64; 2],
+        course: &Course,
         steps: u64,
     ) -> Option<u64> {
+        let t_span = course.t_span;
         let a_step = match self {
             Size::Steps(steps) => {
                 let grid = TimeGrid::with_steps(t_span, steps).ok()?;
                 model.operations(method, &Steps::Equal(grid), operations)?
             }
             Size::Tolerance(rtol) => {
-                let control = per_length(rtol, 0.0).ok()?;
+                let control = course.control(rtol, 0.0).ok()?;
                 model.operations(method, &Steps::ByError { t_span, control }, operations)?
             }
         };
@@ -460,26 +492,32 @@ impl Size {
         self,
         model: &Model,
         method: &MethodSpec,
-        (t_span, to): ([f64; 2], f64),
+        (course, to): (&Course, f64),
         rows: &Rows,
         cancel: Option<&AtomicBool>,
         sink: &mut Sink<'_>,
     ) -> Result<Done, String> {
         let in_words = |error: lieflow::Error| error.to_string();
-        let steps = match self {
+        let t_span = course.t_span;
+        let (steps, stops) = match self {
             Size::Steps(steps) => {
                 let grid = TimeGrid::with_steps(t_span, steps).map_err(in_words)?;
                 let is_whole = to == t_span[1];
                 let part = || TimeGrid::new([t_span[0], to], grid.h().abs()).map_err(in_words);
-                Steps::Equal(if is_whole { grid } else { part()? })
+                (Steps::Equal(if is_whole { grid } else { part()? }), &course.stops)
             }
             Size::Tolerance(rtol) => {
-                let control = per_length(rtol, 0.0).map_err(in_words)?;
-                Steps::ByError { t_span: [t_span[0], to], control }
+                let control = course.control(rtol, 0.0).map_err(in_words)?;
+                (Steps::ByError { t_span: [t_span[0], to], control }, &course.stops_by_error)
             }
         };
-        let times_by_steps = rows.by_steps;
-        let plan = Plan { times_by_steps, cancel, ..Plan::new(steps, rows.save.clone()) };
+        let plan = Plan {
+            times_by_steps: rows.by_steps,
+            cancel,
+            stops: stops.clone(),
+            max_steps: course.max_steps,
+            ..Plan::new(steps, rows.save.clone())
+        };
         let done = model.drive(method, plan, &mut Watched(sink));
         let done = done.map_err(|error| error.to_string())?;
         if done.status == Status::Cancelled {

@@ -16,7 +16,7 @@ pub use checks::checks;
 use curve::OFF;
 pub use curve::{Curve, Reached, WorkPoint, pareto};
 pub use journal::{JOURNAL, Journal};
-pub use judge::{Judge, MOST_ROWS, Reference, Rounding, Rows};
+pub use judge::{Course, Judge, MOST_ROWS, Reference, Rounding, Rows};
 pub use kept::Kept;
 
 use std::collections::VecDeque;
@@ -114,7 +114,6 @@ pub fn speed_against_error(
     let mut bench = Bench {
         judge: &judge,
         effort,
-        t_span,
         rows: plan.rows,
         journal,
         jobs: Vec::new(),
@@ -201,7 +200,7 @@ pub fn speed_against_error(
                 let Line { curve, models, .. } = &lines[job.curve];
                 let (method, shortest) = (&curve.candidate.method, effort.shortest.as_secs_f64());
                 let seconds =
-                    job.size.seconds(&models.timed, method, t_span, &Rows::ENDS, shortest);
+                    job.size.seconds(&models.timed, method, &judge.course, &Rows::ENDS, shortest);
                 let seconds = seconds.map_err(CliError::Message)?;
                 job.times.push(seconds);
                 if let Some(journal) = &mut journal {
@@ -288,7 +287,6 @@ const PROMISING: usize = 6;
 struct Bench<'a> {
     judge: &'a Judge<'a>,
     effort: Effort<'a>,
-    t_span: [f64; 2],
     rows: &'a Rows,
     journal: Option<&'a mut Journal>,
     jobs: Vec<Job>,
@@ -302,8 +300,8 @@ impl Bench<'_> {
     fn next(&mut self, i: usize, line: &mut Line<'_>) -> Result<Option<f64>, CliError> {
         let Line { curve, models: Models { judged, timed, .. }, left } = line;
         let Some(size) = left.pop_front() else { return Ok(None) };
-        let (candidate, t_span, shortest) =
-            (&curve.candidate, self.t_span, self.effort.shortest.as_secs_f64());
+        let (candidate, shortest) = (&curve.candidate, self.effort.shortest.as_secs_f64());
+        let (course, [t0, t1]) = (&self.judge.course, self.judge.course.t_span);
         let key = format!("{} {:?} {size:?}", candidate.name(), candidate.layer);
         let known = self.journal.as_ref().and_then(|journal| journal.point(&key)).cloned();
         let mut point = match known {
@@ -311,7 +309,7 @@ impl Bench<'_> {
             None => {
                 let run = || {
                     let start = cpu_seconds();
-                    let point = self.judge.point(judged, candidate, t_span, size);
+                    let point = self.judge.point(judged, candidate, size);
                     (point, cpu_seconds() - start)
                 };
                 let (mut point, mut took) = run();
@@ -320,10 +318,10 @@ impl Bench<'_> {
                     took = took.min(run().1);
                 }
                 point.first_seconds = took;
-                self.judge.look_within(judged, &candidate.method, t_span, &mut point);
+                self.judge.look_within(judged, &candidate.method, &mut point);
                 // Nobody asks for the rows of a run that has lost the solution.
                 if point.error <= OFF && *self.rows != Rows::ENDS {
-                    match size.seconds(timed, &candidate.method, t_span, self.rows, shortest) {
+                    match size.seconds(timed, &candidate.method, course, self.rows, shortest) {
                         Ok(seconds) => point.output_seconds = (seconds - took).max(0.0),
                         // Steps that reach the end may have no rows between them.
                         Err(failure) => point.failure = Some(failure),
@@ -331,7 +329,7 @@ impl Bench<'_> {
                 }
                 if point.failure.is_none() {
                     let attempts = point.steps + point.rejected;
-                    point.operations = size.operations(judged, &candidate.method, t_span, attempts);
+                    point.operations = size.operations(judged, &candidate.method, course, attempts);
                 }
                 // A run that was stopped is not kept.
                 (self.tick)(self.share)?;
@@ -343,7 +341,7 @@ impl Bench<'_> {
         };
         let took = point.first_seconds;
         if point.failure.is_none() {
-            let length = (t_span[1] - t_span[0]).abs();
+            let length = (t1 - t0).abs();
             point.seconds_per_unit = (took + point.output_seconds) / length;
             let times = self.journal.as_ref().map_or(&[][..], |journal| journal.times(&key));
             self.jobs.push(Job { curve: i, size, times: times.to_vec(), key });
@@ -411,7 +409,7 @@ impl Size {
         self,
         model: &Model,
         method: &MethodSpec,
-        t_span: [f64; 2],
+        course: &Course,
         rows: &Rows,
         shortest: f64,
     ) -> Result<f64, String> {
@@ -421,7 +419,7 @@ impl Size {
         let mut seconds = |repeats: u32| {
             let start = cpu_seconds();
             for _ in 0..repeats {
-                self.run(model, method, (t_span, t_span[1]), rows, None, &mut see)?;
+                self.run(model, method, (course, course.t_span[1]), rows, None, &mut see)?;
             }
             Ok::<_, String>((cpu_seconds() - start) / f64::from(repeats))
         };

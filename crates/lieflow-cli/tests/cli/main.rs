@@ -1,6 +1,7 @@
 //! The program `lieflow`: its commands, its files, and every mistake in a scene.
 
 mod advice;
+mod bounds;
 mod broken;
 mod columns;
 mod compare;

@@ -1,20 +1,20 @@
 //! Operations are counted on every bundled scene, and they are those that the formulas take.
 
 use lieflow::catalog::MethodSpec;
-use lieflow_cli::measure::{Candidate, Rows, Size};
+use lieflow_cli::measure::{Candidate, Course, Rows, Size};
 use lieflow_model::scene::{BUNDLED, Scene};
 
 /// The operations of a step of a scene, over its first steps.
 fn a_step(scene: &Scene, method: &MethodSpec, size: Size) -> Option<u64> {
     let quantities: Vec<&str> = scene.quantities.iter().map(String::as_str).collect();
     let model = scene.model_with(scene.layer, &quantities).unwrap();
-    size.operations(&model, method, three_steps(scene), 1)
+    size.operations(&model, method, &three_steps(scene), 1)
 }
 
 /// A span as long as three of its own steps, so that all succeed.
-fn three_steps(scene: &Scene) -> [f64; 2] {
+fn three_steps(scene: &Scene) -> Course {
     let [from, _] = scene.grid.t_span();
-    [from, from + 3.0 * scene.grid.h()]
+    Course::free([from, from + 3.0 * scene.grid.h()])
 }
 
 #[test]
@@ -36,10 +36,10 @@ fn every_bundled_scene_has_operations() {
             // Where the run itself ends, which between magnets it does not.
             let size = Size::Tolerance(1e-6);
             let model = scene.model_with(scene.layer, &quantities).unwrap();
-            let span = three_steps(&scene);
-            let runs = size
-                .run(&model, method, (span, span[1]), &Rows::ENDS, None, &mut |_, _| {})
-                .is_ok();
+            let course = three_steps(&scene);
+            let end = course.t_span[1];
+            let runs =
+                size.run(&model, method, (&course, end), &Rows::ENDS, None, &mut |_, _| {}).is_ok();
             let found = a_step(&scene, method, size);
             assert_eq!(found.is_some_and(|n| n > 0), runs, "{}: {}", bundled.name, method.label());
         }

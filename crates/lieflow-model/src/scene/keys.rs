@@ -176,7 +176,7 @@ pub(super) struct Limits {
     atol: Option<f64>,
     h_init: Option<f64>,
     h_min: Option<f64>,
-    h_max: Option<f64>,
+    pub(super) h_max: Option<f64>,
     pub(super) max_steps: Option<u64>,
     rule: Option<Rule>,
     /// Are the steps left to the program?
@@ -281,13 +281,13 @@ impl TimeKeys {
 
 impl Times {
     /// Does a step end at each knot? By default where steps are chosen by their error.
-    pub(super) fn at_knots(&self, has_knots: bool) -> Result<bool, Refusal> {
+    pub(super) fn at_knots(&self, has_knots: bool) -> Result<Option<bool>, Refusal> {
         match self.at_knots {
             Some(_) if !has_knots => {
                 let message = "`at_knots` is of `samples` and of magnets: the problem has neither";
                 Err(Refusal::at("at_knots", message))
             }
-            given => Ok(has_knots && given.unwrap_or(self.control.is_some())),
+            given => Ok(given),
         }
     }
 }

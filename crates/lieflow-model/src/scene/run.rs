@@ -49,8 +49,8 @@ pub struct Scene {
     pub adaptive: Option<StepControl>,
     /// The limit of the attempts, where the scene has one.
     pub max_steps: Option<u64>,
-    /// Does a step end at each knot of the samples?
-    pub at_knots: bool,
+    /// Does a step end at each knot of the samples? None: only where steps are chosen by their error.
+    at_knots: Option<bool>,
     /// Where rows are written.
     pub save: SaveAt,
     /// Are output times reached by shorter steps, and not by the continuous extension?
@@ -219,7 +219,7 @@ impl Scene {
             fingerprint,
             units,
         };
-        if scene.knots(scene.grid.t_span()).len() > KNOTS_MAX {
+        if scene.stops(scene.grid.t_span()).len() > KNOTS_MAX {
             let message = format!(
                 "a step has to end at more than {KNOTS_MAX} times in t_span, expected a shorter span \
                  or `at_knots = false`"
@@ -305,7 +305,7 @@ impl Scene {
                 Steps::ByError { t_span, control }
             }
         };
-        Ok(Plan { stops: self.knots(t_span), ..Plan::new(steps, SaveAt::Ends) })
+        Ok(Plan { stops: self.stops(t_span), ..Plan::new(steps, SaveAt::Ends) })
     }
 
     /// The method of a scene of this problem that names none.
@@ -350,21 +350,33 @@ impl Scene {
             times_by_steps: self.times_by_steps,
             events: self.events.iter().map(|event| event.plan(schema)).collect::<Result<_, _>>()?,
             max_steps: self.max_steps,
-            stops: self.knots(self.grid.t_span()),
+            stops: self.stops(self.grid.t_span()),
             ..Plan::new(self.steps(), self.save.clone())
         })
     }
 
-    /// The times at which a step ends: the knots of the problem, where they are asked for.
-    fn knots(&self, t_span: [f64; 2]) -> Stops {
-        let knots = self.at_knots.then(|| self.problem.knots(t_span)).flatten();
-        knots.unwrap_or_default()
+    /// The times at which a step of the run ends.
+    fn stops(&self, t_span: [f64; 2]) -> Stops {
+        self.stops_of(self.adaptive.is_some(), t_span)
+    }
+
+    /// The times at which a step ends, where steps are chosen by their error, or else of one size: the knots of the
+    /// problem, where they are asked for.
+    pub fn stops_of(&self, by_error: bool, t_span: [f64; 2]) -> Stops {
+        let knots = || self.problem.knots(t_span);
+        self.at_knots.unwrap_or(by_error).then(knots).flatten().unwrap_or_default()
+    }
+
+    /// The limit of the step size, where steps are chosen by their error.
+    pub fn largest_step(&self) -> Option<f64> {
+        self.limits.h_max
     }
 
     /// True if steps may pass over knots of the problem.
     pub fn passes_knots(&self) -> bool {
-        let knots = || self.problem.knots(self.grid.t_span());
-        !self.at_knots && knots().is_some_and(|knots| !knots.is_empty())
+        let knots = self.problem.knots(self.grid.t_span());
+        !self.at_knots.unwrap_or(self.adaptive.is_some())
+            && knots.is_some_and(|knots| !knots.is_empty())
     }
 
     /// The quantities that a run computes: those that are written, then those of formulas and events.
