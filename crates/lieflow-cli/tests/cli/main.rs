@@ -10,6 +10,7 @@ mod docs;
 mod events;
 mod every_row;
 mod goals;
+mod growth;
 mod laws;
 mod listing;
 mod messages;

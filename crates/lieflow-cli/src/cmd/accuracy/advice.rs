@@ -13,6 +13,9 @@ const USELESS: f64 = 0.1;
 const GOOD: f64 = 1e-4;
 /// How long an advice is looked for, in seconds, and in times that the run took where that is longer.
 const PATIENCE: [f64; 2] = [3.0, 5.0];
+/// What helps where no step does.
+const SMALL_ERRORS_GROW: &str =
+    "small errors grow fast here. Take a shorter t_span, or trust averages only";
 /// What helps steps of one size that pass over knots.
 const AT_KNOTS: &str = " Steps pass over knots of samples or ends of magnets, and lose their order there: `at_knots = true` \
                         in [time] ends a step at each.";
@@ -37,6 +40,9 @@ impl Check<'_> {
         let verdict = if relative <= USELESS { "inaccurate" } else { "not usable" };
         let when = accuracy.when(worst.t);
         let wrong = format!("`{}` is wrong by {off} {when}: this run is {verdict}.", worst.name);
+        if self.moved.get() > POOR {
+            return Some(format!("{wrong} No step is small enough: {SMALL_ERRORS_GROW}."));
+        }
         let Some(seconds) = seconds else { return Some(wrong) };
         let patience = PATIENCE[0].max(PATIENCE[1] * seconds.min(LONG.as_secs_f64()));
         let until = cpu_seconds() + patience;
@@ -72,11 +78,9 @@ impl Check<'_> {
                  what takes longer than a few seconds"
                     .into()
             }
-            (None, None) => {
-                "The default method, at its least tolerance, is not enough either: small errors grow \
-                 fast here. Take a shorter t_span, or trust averages only"
-                    .into()
-            }
+            (None, None) => format!(
+                "The default method, at its least tolerance, is not enough either: {SMALL_ERRORS_GROW}"
+            ),
         };
         let knots = if self.scene().passes_knots() { AT_KNOTS } else { "" };
         Some(format!("{wrong} {advice}.{knots}"))

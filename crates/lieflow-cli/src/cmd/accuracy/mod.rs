@@ -1,6 +1,7 @@
 //! How right the rows of a run are, and what would do where they are wrong.
 
 mod advice;
+mod unseen;
 
 use std::cell::Cell;
 use std::f64::consts::PI;
@@ -11,33 +12,21 @@ use lieflow::catalog::MethodSpec;
 use lieflow::problems::explained_by_rounding;
 use lieflow::solve::{Next, Stats, Status};
 use lieflow::{SaveAt, TimeGrid};
-use lieflow_model::problem::{
-    Outcome, Plan, SHORT_STEPS, Steps, Watcher, stop_after_hardest, time_to_search,
-};
+use lieflow_model::problem::{Outcome, Plan, Steps, Watcher, stop_after_hardest};
 use lieflow_model::scene::Scene;
 use lieflow_model::schema::{Component, Observable, Row};
-use lieflow_timing::cpu_seconds;
 
 use super::apart::{
     Apart, Beside, ColumnApart, Gap, Largest, Limits, Size, ZerosApart, norm, parts_of,
 };
 use super::shown::{Choice, Shown};
 use super::watch::Watch;
-use crate::output::{Accuracy, Distance, FoundBy, PartError, RowSample, ShownRows, number, rough};
+use crate::output::{Accuracy, Distance, FoundBy, PartError, RowSample, ShownRows, rough};
 
 /// A run that took longer is not made a second time, but where that is asked for.
 pub(super) const LONG: Duration = Duration::from_secs(10);
 /// Rows at which an advice is tried, about.
 const SAMPLE: usize = 100;
-/// The search for a short pulse is given up after this many times the time that it may take.
-const MISJUDGED: f64 = 3.0;
-/// The CPU time of a run below this many seconds says little of that of another. Then a run in short steps is begun in any
-/// case, and ends at its deadline.
-const BRIEF: f64 = 0.015;
-/// A run in short steps that ends this many estimated errors of the end away has found something that two runs did not see.
-const PASSED_OVER: f64 = 30.0;
-/// A motion that makes this of the last digits of its start is worth a warning.
-const AMPLIFIED: f64 = 1e-8;
 /// A column whose error is more than this share of its size has no right digit.
 const NO_DIGIT: f64 = 0.1;
 /// That is told where the relative error of its part is below this.
@@ -78,6 +67,8 @@ pub(super) struct Check<'a> {
     last: Vec<f64>,
     /// The CPU time at which a run ends.
     deadline: Cell<Option<f64>>,
+    /// What a change of the last digits of the start moves the end by, relative to its size: no run has more digits.
+    moved: Cell<f64>,
 }
 
 /// What is known of the errors of a run.
@@ -172,7 +163,8 @@ impl<'a> Check<'a> {
             kept.iter().copied().step_by(kept.len().div_ceil(SAMPLE).max(1)).collect();
         sample.extend((sample.last() != Some(&t)).then_some(t));
         let last = rows.ends().map_or(Vec::new(), |[_, (_, row)]| row.numbers().into());
-        Check { watch, run, own, ended_by_event, is_exact, sample, last, deadline: Cell::new(None) }
+        let (deadline, moved) = (Cell::new(None), Cell::new(0.0));
+        Check { watch, run, own, ended_by_event, is_exact, sample, last, deadline, moved }
     }
 
     /// Is the exact motion known?
@@ -230,22 +222,11 @@ impl<'a> Check<'a> {
             let rounding = f64::EPSILON * self.run.t_span[0].abs().max(self.run.t_span[1].abs());
             (!are_wrong(zeros)).then(|| (zeros.distance * share).max(rounding))
         };
+        let moved = self.moved_by_last_digits(seconds);
+        self.moved.set(moved.as_ref().map_or(0.0, |moved| self.by_rounding(moved.relative())));
         let (mut accuracy, mut warnings) = (self.judge(found_by, &apart, share, clock), Vec::new());
         let mut time_errors: Vec<_> = apart.events.iter().map(time_error).collect();
-        if let Some(moved) = self.moved_by_last_digits() {
-            accuracy = accuracy.with_digits(moved.relative().max(f64::EPSILON));
-            let worst = moved.worst().filter(|worst| worst.largest.relative > AMPLIFIED);
-            warnings.extend(worst.map(|worst| {
-                let by = match worst.largest.degrees {
-                    Some(degrees) => format!("{} degrees", rough(degrees)),
-                    None => format!("{} of its size", rough(worst.largest.relative)),
-                };
-                format!(
-                    "the last digits of the start move `{}` by {by} at the end: no method has more digits there",
-                    worst.name
-                )
-            }));
-        }
+        warnings.extend(moved.and_then(|moved| self.growth_warning(&moved, accuracy.relative())));
         if let Some((other, warning)) = self.passed_over(&accuracy, seconds) {
             (accuracy, time_errors) = (other, vec![None; time_errors.len()]);
             warnings.push(warning);
@@ -305,68 +286,6 @@ impl<'a> Check<'a> {
             ))
         };
         parts_of(self.watch).enumerate().filter_map(told).collect()
-    }
-
-    /// The size of short steps, where steps are chosen by their error and may be larger.
-    fn short_step(&self) -> Option<f64> {
-        let [t0, end] = self.run.t_span;
-        let short = (end - t0).abs() / SHORT_STEPS as f64;
-        (self.scene().tolerances().is_some() && 2.0 * short < self.own.largest).then_some(short)
-    }
-
-    /// The distance of the last row from that of a run in short steps, with a warning, where the steps of two runs that are
-    /// chosen by their error have passed over something, such as a short pulse or a jump near the end of a step. Neither run
-    /// evaluates f there, so the error of a step shows nothing. Only the last row is compared: a pulse whose effect dies out
-    /// before it is not seen.
-    fn passed_over(&self, known: &Accuracy, seconds: f64) -> Option<(Accuracy, String)> {
-        let (clock, end) = (Instant::now(), self.end());
-        if self.is_exact || self.ended_by_event {
-            return None;
-        }
-        let short = self.short_step()?;
-        let most = time_to_search(self.own.steps, if seconds < BRIEF { 0.0 } else { seconds })?;
-        // The estimate of its time may be wrong: within a pulse f may be dear, or steps small.
-        self.deadline.set(Some(cpu_seconds() + most * MISJUDGED));
-        let found = self.rows_at(Way { largest: Some(short), ..OWN }, &[end]);
-        self.deadline.set(None);
-        let (rows, taken) = found.ok()?;
-        let pair = rows.first().map(|row| (end, [&self.last[..], &row[..]]));
-        let apart = Apart::of_rows(self.watch, &self.run.sizes, pair.into_iter());
-        let found = self.judge(FoundBy::ShortSteps, &apart, 1.0, clock);
-        let rounding = explained_by_rounding(taken.steps, 1.0);
-        let is_far = found.relative() > PASSED_OVER * known.at_end().max(rounding);
-        is_far.then(|| {
-            let name = found.worst().map_or("", |worst| &worst.name);
-            let [short, size] = [short, self.own.largest].map(number);
-            let warning = format!(
-                "in steps of at most {short} `{name}` ends elsewhere: the steps of this run, of up to {size}, pass over \
-                 something short, such as a pulse or a jump. Give h_max = {short} in [time], or less"
-            );
-            (found, warning)
-        })
-    }
-
-    /// How far the last digits of the start move the end of a run by a method that is exact. Such a run has no other error,
-    /// and the exact motion has the same one.
-    fn moved_by_last_digits(&self) -> Option<Accuracy> {
-        let (clock, end) = (Instant::now(), self.end());
-        let method = self.method(OWN);
-        let has_order = self.watch.model.order(&method).ok()?.is_some();
-        if !self.is_exact || has_order || self.ended_by_event {
-            return None;
-        }
-        let start = self.watch.model.start(&method).ok()?;
-        // Two changes of neighbouring numbers in opposite directions. Steps of one size are one step.
-        let way = Way { factor: self.own.steps.max(1) as f64, ..OWN };
-        let moved = [1.0, -1.0].map(|sign| {
-            let sign = |i: usize| if i.is_multiple_of(2) { sign } else { -sign };
-            let last_digit = |(i, x): (usize, &f64)| x + sign(i) * f64::EPSILON * x;
-            let start = start.iter().enumerate().map(last_digit).collect();
-            self.rows_from(Some(start), way, &[end]).ok()?.0.pop()
-        });
-        let pairs = moved.iter().flatten().map(|row| (end, [&self.last[..], &row[..]]));
-        let apart = Apart::of_rows(self.watch, &self.run.sizes, pairs);
-        Some(self.judge(FoundBy::Exact, &apart, 1.0, clock))
     }
 
     fn scene(&self) -> &'a Scene {
@@ -531,6 +450,7 @@ impl<'a> Check<'a> {
             FoundBy::Exact => f64::EPSILON,
             _ => explained_by_rounding(self.own.steps, 1.0),
         };
+        let unseen = unseen.max(self.moved.get());
         let (seconds, rows, parts) = (clock.elapsed().as_secs_f64(), apart.rows, parts.collect());
         let t_end = self.end();
         Accuracy { found_by, seconds, rows, digits: 0, parts, t_end }.with_digits(unseen)

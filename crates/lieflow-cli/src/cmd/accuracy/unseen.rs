@@ -1,0 +1,127 @@
+//! What two runs of one kind do not see: rounding that both have, and what both pass over.
+
+use std::time::Instant;
+
+use lieflow::problems::explained_by_rounding;
+use lieflow_model::problem::{SHORT_STEPS, time_to_search};
+use lieflow_timing::cpu_seconds;
+
+use super::{Check, NO_DIGIT, OWN, Way};
+use crate::cmd::apart::Apart;
+use crate::output::{Accuracy, FoundBy, number, rough};
+
+/// The search for a short pulse is given up after this many times the time that it may take.
+const MISJUDGED: f64 = 3.0;
+/// A run in short steps that ends this many estimated errors of the end away has found something that two runs did not see.
+const PASSED_OVER: f64 = 30.0;
+/// The CPU time of a run below this many seconds says little of that of another. Then a run in short steps is begun in any
+/// case, and ends at its deadline.
+const BRIEF: f64 = 0.015;
+/// A motion that makes this of the last digits of its start is worth a warning.
+const AMPLIFIED: f64 = 1e-8;
+/// The change of the start that shows how rounding in a run grows. A change of one digit may be lost in sums.
+const LAST_DIGITS: f64 = 64.0 * f64::EPSILON;
+/// Rounding in a run is like this part of it.
+const OF_CHANGE: f64 = 1.0 / 16.0;
+/// A motion that makes this of it is worth a warning, where the error of the method is smaller.
+const GROWN: f64 = 1e-6;
+
+impl Check<'_> {
+    /// The size of short steps, where steps are chosen by their error and may be larger.
+    pub(super) fn short_step(&self) -> Option<f64> {
+        let [t0, end] = self.run.t_span;
+        let short = (end - t0).abs() / SHORT_STEPS as f64;
+        (self.scene().tolerances().is_some() && 2.0 * short < self.own.largest).then_some(short)
+    }
+
+    /// The distance of the last row from that of a run in short steps, with a warning, where the steps of two runs that are
+    /// chosen by their error have passed over something, such as a short pulse or a jump near the end of a step. Neither run
+    /// evaluates f there, so the error of a step shows nothing. Only the last row is compared: a pulse whose effect dies out
+    /// before it is not seen.
+    pub(super) fn passed_over(&self, known: &Accuracy, seconds: f64) -> Option<(Accuracy, String)> {
+        let (clock, end) = (Instant::now(), self.end());
+        if self.is_exact || self.ended_by_event {
+            return None;
+        }
+        let short = self.short_step()?;
+        let most = time_to_search(self.own.steps, if seconds < BRIEF { 0.0 } else { seconds })?;
+        // The estimate of its time may be wrong: within a pulse f may be dear, or steps small.
+        self.deadline.set(Some(cpu_seconds() + most * MISJUDGED));
+        let found = self.rows_at(Way { largest: Some(short), ..OWN }, &[end]);
+        self.deadline.set(None);
+        let (rows, taken) = found.ok()?;
+        let pair = rows.first().map(|row| (end, [&self.last[..], &row[..]]));
+        let apart = Apart::of_rows(self.watch, &self.run.sizes, pair.into_iter());
+        let found = self.judge(FoundBy::ShortSteps, &apart, 1.0, clock);
+        let growth = (self.moved.get() / (OF_CHANGE * LAST_DIGITS)).max(1.0);
+        let rounding = explained_by_rounding(taken.steps, growth);
+        let is_far = found.relative() > PASSED_OVER * known.at_end().max(rounding);
+        is_far.then(|| {
+            let name = found.worst().map_or("", |worst| &worst.name);
+            let [short, size] = [short, self.own.largest].map(number);
+            let warning = format!(
+                "in steps of at most {short} `{name}` ends elsewhere: the steps of this run, of up to {size}, pass over \
+                 something short, such as a pulse or a jump. Give h_max = {short} in [time], or less"
+            );
+            (found, warning)
+        })
+    }
+
+    /// How far the last digits of the start move the end of a run. Rounding in the run does the same, and a second run
+    /// does not see it where both round alike. The exact motion has this error, too.
+    pub(super) fn moved_by_last_digits(&self, seconds: f64) -> Option<Accuracy> {
+        let (clock, end) = (Instant::now(), self.end());
+        let method = self.method(OWN);
+        let has_order = self.watch.model.order(&method).ok()?.is_some();
+        if self.ended_by_event || (self.is_exact && has_order) {
+            return None;
+        }
+        let start = self.watch.model.start(&method).ok()?;
+        // Two changes of neighbouring numbers in opposite directions. Steps of one size of an exact method are one step.
+        let (factor, change) = match has_order {
+            true => (1.0, LAST_DIGITS),
+            false => (self.own.steps.max(1) as f64, f64::EPSILON),
+        };
+        let way = Way { factor, ..OWN };
+        let signs = if has_order { &[1.0][..] } else { &[1.0, -1.0] };
+        self.deadline.set(Some(cpu_seconds() + MISJUDGED * seconds.max(BRIEF)));
+        let moved = signs.iter().map(|sign| {
+            let sign = |i: usize| if i.is_multiple_of(2) { *sign } else { -sign };
+            let last_digit = |(i, x): (usize, &f64)| x + sign(i) * change * x;
+            let start = start.iter().enumerate().map(last_digit).collect();
+            self.rows_from(Some(start), way, &[end]).ok()?.0.pop()
+        });
+        let moved: Vec<_> = moved.collect();
+        self.deadline.set(None);
+        let pairs = moved.iter().flatten().map(|row| (end, [&self.last[..], &row[..]]));
+        let apart = Apart::of_rows(self.watch, &self.run.sizes, pairs);
+        Some(self.judge(FoundBy::Exact, &apart, 1.0, clock))
+    }
+
+    /// What rounding does to the end, where the change of the start moves it by this. A motion that is another one then is
+    /// not linear in that.
+    pub(super) fn by_rounding(&self, moved: f64) -> f64 {
+        if self.is_exact || moved > NO_DIGIT { moved } else { OF_CHANGE * moved }
+    }
+
+    /// The warning that the end moves by so much with the last digits of the start, where the error that is known is smaller.
+    pub(super) fn growth_warning(&self, moved: &Accuracy, known: f64) -> Option<String> {
+        let (change, from, so) = match self.is_exact {
+            true => (
+                "the last digits of the start move".into(),
+                AMPLIFIED,
+                "no method has more digits there",
+            ),
+            false => {
+                let change = format!("a change of {} of the start moves", rough(LAST_DIGITS));
+                (change, GROWN.max(known / OF_CHANGE), "so does rounding")
+            }
+        };
+        let worst = moved.worst().filter(|worst| worst.largest.relative > from)?;
+        let by = match worst.largest.degrees {
+            Some(degrees) => format!("{} degrees", rough(degrees)),
+            None => format!("{} of its size", rough(worst.largest.relative)),
+        };
+        Some(format!("{change} `{}` by {by} at the end: {so}", worst.name))
+    }
+}
