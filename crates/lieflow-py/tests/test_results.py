@@ -209,3 +209,24 @@ def test_a_subspace_is_exact_forward_and_backward(t):
         assert np.abs(problem.exact([t]).projector[0] - right).max() < 1e-13
         run = lf.solve_ivp(problem, (0, t), t_eval=[t])
         assert np.abs(run.projector[0] - right).max() < 1e-12
+
+
+def test_rounding_that_two_runs_share_has_an_error():
+    # The number is not quite the upright position. In small steps the changes of the angle are lost in sums.
+    plane = lf.Parts(y="numbers 2")
+
+    def pendulum(t, y):
+        return {"y": [y.y[1], -9.81 * np.sin(y.y[0]) - 0.05 * y.y[1]]}
+
+    right = np.array([2.93808977, -0.63121882])
+    for settings in ({"rtol": 1e-14, "atol": 1e-14}, {"dt": 0.005}, {"rtol": 1e-14, "atol": 1e-14, "max_step": 0.005}):
+        start = {"y": [3.141592653589793, 0.0]}
+        result = lf.solve_ivp(pendulum, (0, 11.5), start, group=plane, t_eval=[11.5], **settings)
+        error = np.linalg.norm(result.y.y[-1] - right)
+        assert result.estimate_error().y["y"] > 0.2 * error > 0.02, settings
+
+    def quiet(t, y):
+        return {"y": [y.y[1], -y.y[0]]}
+
+    result = lf.solve_ivp(quiet, (0, 10), {"y": [1.0, 0.0]}, group=plane, rtol=1e-12, atol=1e-12)
+    assert result.estimate_error().y["y"] < 1e-11

@@ -27,6 +27,8 @@ Array = NDArray[np.float64]
 METHOD = "rkmk dop853 exp"
 #: The least relative tolerance that rounding allows.
 LEAST = 1e-14
+# The relative change of a start that shows how rounding grows.
+LAST_DIGITS = 64 * 2.0**-52
 
 
 class Event:
@@ -484,16 +486,23 @@ def _of_field(
     made_by = (ready.space_args, method, ready.linear, ready.flat)
     sol = None if curve is None else OdeSolution(curve, made_by, ready.layout)
 
-    def again(result: Result) -> tuple[str, Result]:
-        def run(finer: dict[str, Any]) -> Result:
+    def again(result: Result) -> tuple[str, Result, Result | None]:
+        def run(finer: dict[str, Any], change: float = 0.0) -> Result:
             end, others = _beyond(result, span, events)
-            start: Any = np.reshape(ready.flat, ready.shape)  # y0, which may have changed
+            start: Any = np.reshape(_changed(ready.flat, change), ready.shape)  # y0, which may have changed
             start = start if ready.layout is None else ready.layout.split(start)
             return _of_field(fun, (span[0], end), start, method, finer, result.t, others, None, space)
 
         return _second(run, settings, result, span[0], seconds)
 
     return Result(sol=sol, _layout=ready.layout, _again=again, _changes=_changes(events), **found)
+
+
+def _changed(start: Array | list[float], change: float) -> Array:
+    """Return a start with relative changes of neighbouring numbers in opposite directions."""
+    signs = np.resize([1.0, -1.0], np.shape(start))
+    changed: Array = np.asarray(start) * (1.0 + change * signs)
+    return changed
 
 
 def _changes(events: list[Event]) -> list[int]:
@@ -512,9 +521,12 @@ def _beyond(first: Result, span: tuple[float, float], events: list[Event]) -> tu
 
 
 def _second(
-    run: Callable[[dict[str, Any]], Result], settings: dict[str, Any], first: Result, t0: float, seconds: float
-) -> tuple[str, Result]:
-    """Return what a second run is, and the run. Its steps are no more like those of the first than 5 %."""
+    run: Callable[..., Result], settings: dict[str, Any], first: Result, t0: float, seconds: float
+) -> tuple[str, Result, Result | None]:
+    """Return what a second run is, the run, and the first one again from a start whose last digits are changed.
+
+    The steps of the second run are no more like those of the first than 5 %.
+    """
     if not first.nsteps:
         raise RunError("no estimate: the run has no step")
     finer = {**settings, "dense_output": False}
@@ -537,7 +549,11 @@ def _second(
             found_by = by_tolerance
     if other.status < 0 or len(other.t) < len(first.t):
         raise RunError(f"no estimate: {found_by} ended at t = {other.t_end}: {other.message}")
-    return found_by, other
+    try:
+        grown = run({**settings, "dense_output": False}, LAST_DIGITS)
+    except (RunError, ArgumentError):  # it is no start, for its digits
+        return found_by, other, None
+    return found_by, other, grown if len(grown.t) == len(first.t) else None
 
 
 def _finer(settings: dict[str, Any], first: Result, t0: float, seconds: float) -> tuple[str, dict[str, Any]]:
@@ -604,22 +620,23 @@ def _of_problem(
 
         sol._rest = rest
 
-    def again(result: Result) -> tuple[str, Result]:
+    def again(result: Result) -> tuple[str, Result, Result | None]:
         plain = y0 is None and not any(event.change for event in events)
         # Euler angles and quaternions are those of the rows, up to turns and signs.
         found = model.exact(span[0], result.t, method, rows) if plain else None
         exact = None if found is None else layout.split(found)
         if exact is not None and not events:
-            return "the exact motion", Result(y=exact, t_events=[])
+            return "the exact motion", Result(y=exact, t_events=[]), None
 
-        def run(finer: dict[str, Any]) -> Result:
+        def run(finer: dict[str, Any], change: float = 0.0) -> Result:
             end, others = _beyond(result, span, events)
-            return _of_problem(problem, (span[0], end), start, method, finer, result.t, others, asked, None, args)
+            of = start if change == 0.0 else _changed(model.start(method) if start is None else start, change)
+            return _of_problem(problem, (span[0], end), of, method, finer, result.t, others, asked, None, args)
 
-        found_by, other = _second(run, settings, result, span[0], seconds)
+        found_by, other, grown = _second(run, settings, result, span[0], seconds)
         if exact is not None:
-            return "the exact motion, and the events by " + found_by, Result(y=exact, t_events=other.t_events)
-        return found_by, other
+            return "the exact motion, and the events by " + found_by, Result(y=exact, t_events=other.t_events), None
+        return found_by, other, grown
 
     def first() -> Quantities:
         is_start = found["t"][0] == span[0]
