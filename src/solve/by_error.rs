@@ -105,7 +105,7 @@ impl Timeline {
                 self.see_turns(run.points(), h);
             }
             let (end, size) = self.propose(h, stop);
-            if self.stats.accepted + self.stats.rejected >= max_steps {
+            if self.attempts_left(max_steps) == 0 {
                 return Err(self.too_many(size, max_steps));
             }
             if end == self.t {
@@ -223,12 +223,12 @@ impl Timeline {
         if !is_free || is_alone || self.is_long(h) {
             return Streak::ONE;
         }
-        let Stats { accepted, rejected, .. } = self.stats;
+        let accepted = self.stats.accepted;
         let most = steps.min(self.cadence.next).saturating_sub(accepted);
         let most =
             self.turns.as_ref().map_or(most, |turns| most.min(turns.next.saturating_sub(accepted)));
         let most = most.min(noise.next.saturating_sub(accepted));
-        let most = most.min(control.max_steps - accepted - rejected).max(1);
+        let most = most.min(self.attempts_left(control.max_steps)).max(1);
         Streak { most, size, kept: controller.kept, stop, time, resize: Some(sizes) }
     }
 
@@ -313,7 +313,7 @@ impl Timeline {
     pub(super) fn too_many(&self, h: f64, max_steps: u64) -> RunError {
         let Stats { accepted, rejected, .. } = self.stats;
         let h = h.copysign(self.t1 - self.t);
-        let left = (self.t1 - self.t).abs();
+        let left = (self.goal - self.t).abs();
         RunError::TooManySteps { t: self.t, left, h, accepted, rejected, max_steps }
     }
 }

@@ -91,17 +91,19 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
     /// [`RunError`]; the state is then the last accepted one. At the end of the span a step does nothing.
     pub fn step(&mut self) -> Result<f64, RunError> {
         let stop = self.stop(self.times.t1);
+        self.times.ask_for(self.times.t1);
         self.times.steps_before(&mut Alone(&mut self.points), stop, Reach::STEP)?;
         Ok(self.times.t)
     }
 
     /// Takes steps until the time is exactly t. The last step is shortened to end there. f is never evaluated after t, so
-    /// the state or f may be changed there.
+    /// the state or f may be changed there. The limit of attempts ([`Solve::max_steps`]) is that of this call.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] for a t before the current time or after the end of the span; else as [`step`](Self::step).
     pub fn advance_to(&mut self, t: f64) -> Result<&PointOf<P>, RunError> {
         self.times.check_ahead(t)?;
+        self.times.ask_for(t);
         while self.times.t != t {
             self.steps_to(t, u64::MAX)?;
         }
@@ -109,16 +111,22 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
     }
 
     /// As [`advance_to`](Self::advance_to), but returns after about this time on the clock, and after one step at least. Returns
-    /// true if t is reached. A caller that has other work in between, or can be cancelled, calls it until then.
+    /// true if t is reached. A caller that has other work in between, or can be cancelled, calls it until then. The limit of
+    /// attempts is that of all these calls.
     ///
     /// # Errors
     /// As [`advance_to`](Self::advance_to).
     pub fn advance_for(&mut self, t: f64, limit: Duration) -> Result<bool, RunError> {
         self.times.check_ahead(t)?;
+        if self.times.goal != t {
+            self.times.ask_for(t);
+        }
         let start = Instant::now();
         while self.times.t != t {
             let clock = Instant::now();
-            self.steps_to(t, self.times.stats.accepted.saturating_add(self.patience.steps()))?;
+            let most = self.times.stats.accepted.saturating_add(self.patience.steps());
+            // After an error the next call is another one.
+            self.steps_to(t, most).inspect_err(|_| self.times.goal = f64::NAN)?;
             self.patience.after(clock.elapsed());
             if start.elapsed() >= limit {
                 break;

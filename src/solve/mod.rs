@@ -265,7 +265,7 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
     }
 
     /// Ends the run with an error after this many attempts. The default is a million. A fixed step size over a finite
-    /// span has no limit.
+    /// span has no limit. An [`Integrator`] has it for each call.
     pub fn max_steps(mut self, attempts: u64) -> Self {
         if attempts == 0 {
             let error = Error::out_of_range("max_steps", 0.0, "at least 1");

@@ -6,6 +6,7 @@ use super::interpolant::Piece;
 use super::points::{AnyPoints, Place, Points};
 use super::solution::{Next, Occurrence};
 use super::stats::RunError;
+use crate::actions::Action;
 use crate::error::{Error, StepError};
 use crate::methods::{Attempts, Method, Step, Streak};
 use crate::problems::{Invariant, PointOf, Problem};
@@ -180,8 +181,17 @@ impl<P: Problem, M: Method<P>> AnyOutput for Output<'_, '_, P, M> {
     }
     fn observe(&mut self, t: f64) -> Next {
         let next = (self.observe)(t, &mut self.shown);
-        if next == Next::Stop {
-            self.shown = self.points.y.clone(); // whatever the observer wrote there
+        // Whatever the observer wrote there. A point that owns no memory has one shape.
+        let is_lost = match next {
+            Next::Continue if core::mem::needs_drop::<PointOf<P>>() => {
+                let problem = &*self.points.problem;
+                problem.action().check(problem.group(), &self.shown).is_err()
+            }
+            Next::Continue | Next::Changed => false,
+            Next::Stop => true,
+        };
+        if is_lost {
+            self.shown = self.points.y.clone();
         }
         next
     }

@@ -185,17 +185,23 @@ fn square_of_size<P: Problem>(y: &PointOf<P>) -> ScalarOf<P> {
     if square.all_below(1.0) { one } else { square }
 }
 
-/// Corrects y to M. Refuses a y that is farther from M than numbers with seven digits are.
+/// A start whose relative residual is below this many ε is on M.
+const ON_M: f64 = 1000.0;
+
+/// Corrects y to M. Refuses a y that is farther from M than numbers with seven digits are. Returns true if y was farther
+/// from M than rounding.
 fn check_on_manifold<P: Problem>(
     problem: &P,
     y: &mut PointOf<P>,
     work: &mut <P::Action as Action<P::Group>>::Work,
-) -> Result<(), Error> {
+) -> Result<bool, Error> {
     let square = square_of_size::<P>(y);
-    match problem.action().restore(problem.group(), y, work) {
-        Some(residual) => check_residual(problem, residual / square),
-        None => Ok(()),
-    }
+    let Some(residual) = problem.action().restore(problem.group(), y, work) else {
+        return Ok(false);
+    };
+    let relative = residual / square;
+    check_residual(problem, relative)?;
+    Ok(!relative.all_below(ON_M * ScalarOf::<P>::EPSILON))
 }
 
 /// Refuses the relative residual of a y that is farther from M than numbers with seven digits are.
@@ -211,16 +217,20 @@ fn check_residual<P: Problem>(problem: &P, relative: ScalarOf<P>) -> Result<(), 
     }
 }
 
-/// Checks the start of a run, and the tolerance for it. Returns the scratch of the action.
+/// Checks the start of a run, and the tolerance for it, and corrects it to M where it is off by more than rounding, as
+/// numbers with few digits are. Returns the scratch of the action.
 fn checked_start<P: Problem>(
     problem: &P,
-    y: &PointOf<P>,
+    y: &mut PointOf<P>,
     tolerance: Option<&Tolerance>,
 ) -> Result<<P::Action as Action<P::Group>>::Work, Error> {
     let (group, action) = (problem.group(), problem.action());
     action.check(group, y)?;
     let mut restore = action.work(group);
-    check_on_manifold(problem, &mut y.clone(), &mut restore)?;
+    let mut on = y.clone();
+    if check_on_manifold(problem, &mut on, &mut restore)? {
+        action.assign(group, &on, y);
+    }
     action.check_member(group, y)?;
     if let Some(tolerance) = tolerance {
         tolerance.check_rounding::<ScalarOf<P>>()?;
@@ -253,13 +263,13 @@ impl<'a, P: Problem, M: Method<P>> Points<'a, P, M> {
     pub(super) fn new(
         (problem, method): (Held<'a, P>, Held<'a, M>),
         adaptive: Option<(&Tolerance, Estimator<P, M>)>,
-        y: PointOf<P>,
+        mut y: PointOf<P>,
         field_at: Option<f64>,
     ) -> Result<(Self, Facts, Option<usize>), Error> {
         let held = (problem, method);
         let (problem, method) = (&*held.0, &*held.1);
         let restore =
-            checked_start(problem, &y, adaptive.as_ref().map(|(tolerance, _)| *tolerance))?;
+            checked_start(problem, &mut y, adaptive.as_ref().map(|(tolerance, _)| *tolerance))?;
         let facts = method.facts(problem);
         let mut error_order = None;
         let rates = match adaptive {
@@ -502,7 +512,7 @@ impl<P: Problem, M: Method<P>> AnyPoints for Points<'_, P, M> {
         let Points { problem, y, restore, .. } = self;
         let problem = &**problem;
         match problem.group().holds_more() {
-            true => check_on_manifold(problem, &mut y.clone(), restore),
+            true => check_on_manifold(problem, &mut y.clone(), restore).map(|_| ()),
             false => Ok(()),
         }
     }

@@ -241,7 +241,9 @@ where
     /// state is unchanged.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), Error> {
         self.points.list = Some(Numbers::each_number);
-        self.times.restore(&mut self.points, bytes)
+        self.times.restore(&mut self.points, bytes)?;
+        self.times.ask_for(self.times.t1);
+        Ok(())
     }
 }
 

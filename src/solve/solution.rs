@@ -33,7 +33,7 @@ impl Status {
 /// The answer of an observer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Next {
-    /// Go on.
+    /// Go on. What the observer wrote into the state has no effect.
     #[default]
     Continue,
     /// Stop here.

@@ -74,6 +74,10 @@ pub(super) enum Looked {
 pub(super) struct Timeline {
     pub(super) t: f64,
     pub(super) t1: f64,
+    /// The time that the caller asked for: the end, where it asked for a run.
+    pub(super) goal: f64,
+    /// The attempts before it asked for that.
+    before: u64,
     /// The last time at which f may jump: the start, a stop, or a time at which the caller could change it.
     pub(super) jumped_at: f64,
     /// The last step.
@@ -129,7 +133,20 @@ impl Timeline {
         };
         let last = Step { n: 0, t: t0, h: 0.0 };
         let (looked_at, turns) = (Looked::Nothing, None);
-        Timeline { t: t0, t1, jumped_at: t0, last, looked_at, pacer, turns, cadence, stats, facts }
+        Timeline {
+            t: t0,
+            t1,
+            goal: t1,
+            before: 0,
+            jumped_at: t0,
+            last,
+            looked_at,
+            pacer,
+            turns,
+            cadence,
+            stats,
+            facts,
+        }
     }
 
     /// Lets exact steps be short enough to show events, and tells long steps to the search for their zeros.
@@ -248,17 +265,29 @@ impl Timeline {
         Step { n, t, h }
     }
 
+    /// The caller asks for a state at this time. The limit of attempts begins anew.
+    pub(super) fn ask_for(&mut self, goal: f64) {
+        self.goal = goal;
+        self.before = self.stats.accepted + self.stats.rejected;
+    }
+
+    /// How many of these attempts are left.
+    pub(super) fn attempts_left(&self, most: u64) -> u64 {
+        let Stats { accepted, rejected, .. } = self.stats;
+        most.saturating_sub((accepted + rejected).saturating_sub(self.before))
+    }
+
     fn equal_step(
         &mut self,
         points: &mut dyn AnyPoints,
         Stop { t: stop, jumps }: Stop,
     ) -> Result<(), RunError> {
-        let Pacer::Equal { grid, done, max_steps } = &mut self.pacer else { return Ok(()) };
-        let max_steps = *max_steps;
-        if self.stats.accepted >= max_steps {
-            let h = grid.h().abs();
-            return Err(self.too_many(h, max_steps));
+        if let Pacer::Equal { grid, max_steps, .. } = &self.pacer
+            && self.attempts_left(*max_steps) == 0
+        {
+            return Err(self.too_many(grid.h().abs(), *max_steps));
         }
+        let Pacer::Equal { grid, done, .. } = &mut self.pacer else { return Ok(()) };
         if self.t != grid.time(*done) {
             // The run was taken off its grid: equal steps from here, of the same size.
             let anew = TimeGrid::new([self.t, self.t1], grid.h().abs())?;
@@ -344,7 +373,8 @@ impl Timeline {
         if grid.is_split() || self.stats.accepted != first || self.t != grid.time(first) {
             return Ok(false);
         }
-        let mut end = end.min(self.cadence.next).min(grid.steps()).min(*max_steps);
+        let most = self.before.saturating_add(*max_steps);
+        let mut end = end.min(self.cadence.next).min(grid.steps()).min(most);
         if let Some(time) = time {
             end = end.min(grid.last_before(first, time));
         }
@@ -395,7 +425,14 @@ impl Timeline {
         match inside || t == self.t {
             true => self.place(points, t),
             false => {
-                let expected = format!("a time of the last step, from {start} to {}", self.t);
+                let expected = match self.looked_at {
+                    Looked::Nothing => format!(
+                        "the time of the state, {}: after a change, or in a run that goes on from bytes, the last step is not \
+                         known",
+                        self.t
+                    ),
+                    _ => format!("a time of the last step, from {start} to {}", self.t),
+                };
                 Err(Error::out_of_range("t", t, expected).into())
             }
         }

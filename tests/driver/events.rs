@@ -493,6 +493,24 @@ fn an_observer_that_changes_the_shape_of_a_matrix_is_refused() {
     assert_eq!((known.t, known.y.nrows()), (0.25, 3));
 }
 
+/// What an observer writes has no effect where it does not say that it changed the state.
+#[test]
+fn an_observer_that_goes_on_changes_nothing() {
+    let lattice = IsospectralFlow::toda(3).expect("a flow");
+    let start = toda_lattice(&[0.0, 0.1, 0.3], &[0.3, 0.1, -0.2]).expect("a lattice");
+    let method = Rkmk::new(RK4, Cay);
+    let end = |write: &dyn Fn(&mut Mat<f64>)| {
+        let run = Solve::new(&lattice, &method, [0.0, 1.0]).dt(0.1).times([0.25, 0.3, 0.47, 1.0]);
+        let run = run.run_with(start.clone(), |_, l: &mut Mat<f64>| {
+            write(l);
+            Next::Continue
+        });
+        run.expect("a run").y
+    };
+    let right = end(&|_| {});
+    assert!(end(&|l| *l = Mat::zeros(2, 2)) == right && end(&|l| l.fill(f64::NAN)) == right);
+}
+
 /// A reflection has orthonormal columns, and is no rotation.
 #[test]
 fn a_change_to_a_reflection_is_refused() {

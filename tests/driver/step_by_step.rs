@@ -233,3 +233,67 @@ fn f_may_change_where_a_step_ends() {
     }
     check![Rk(BS3), Rk(DOPRI5), Rkmk::new(DOPRI5, Exp), AnyMethod::embedded(Rk(DOPRI5))];
 }
+
+/// The limit of attempts is that of a call: a loop by hand may take any number of steps, and each call ends.
+#[test]
+fn each_call_has_the_limit_of_attempts() {
+    let f = |_: f64, _: &Matrix3<f64>, v: &mut Vector3<f64>| *v = Vector3::new(0.0, 0.0, 0.1);
+    let flow = Flow::new(So3::new(), LeftTranslation, f);
+    let method = Rkmk::new(DOPRI5, Exp);
+    let solve = |by_error: bool| {
+        let solve = Solve::new(&flow, &method, [0.0, f64::INFINITY]).max_steps(100);
+        if by_error { solve.tolerances(1e-6, 1e-6).max_step(0.01) } else { solve.dt(0.01) }
+    };
+    for by_error in [true, false] {
+        let start = || solve(by_error).integrator(Matrix3::identity()).expect("a start");
+        let mut run = start();
+        for k in 1..=20 {
+            run.advance_to(0.9 * f64::from(k)).expect("steps within the limit");
+        }
+        for _ in 0..500 {
+            run.step().expect("a step");
+        }
+        assert!(run.stats().accepted > 2000);
+        let state = run.save();
+        // More than a call may take; the message has the time that was asked for.
+        let far = run.t() + 2.0;
+        for call in 0..2 {
+            let failed = match call {
+                0 => run.advance_to(far).map(drop),
+                _ => (0..200).try_for_each(|_| run.advance_for(far, Duration::ZERO).map(drop)),
+            };
+            match failed {
+                Err(RunError::TooManySteps { left, max_steps: 100, .. }) => {
+                    assert!(left < 2.0, "{left}")
+                }
+                other => panic!("{other:?}"),
+            }
+            run.restore(&state).expect("its own state");
+        }
+        run.advance_to(run.t() + 0.5).expect("a call after an error");
+        let mut other = start();
+        other.restore(&state).expect("a state");
+        other.advance_to(other.t() + 0.5).expect("steps after a state of many");
+        assert_eq!(other.y(), run.y());
+    }
+}
+
+/// A start with the digits of f32 is put on the group at once, and not in the middle of the run.
+#[test]
+fn a_start_with_few_digits_is_corrected_at_once() {
+    let f = |_: f64, _: &Matrix3<f64>, v: &mut Vector3<f64>| *v = Vector3::new(0.1, 0.2, 0.3);
+    let flow = Flow::new(So3::new(), LeftTranslation, f);
+    let rough =
+        exp(&Vector3::new(1.0, 2.0, 3.0)).expect("an angle").map(|x: f64| f64::from(x as f32));
+    let method = Rkmk::new(DOP853, Exp);
+    let run = Solve::new(&flow, &method, [0.0, 5.0]).tolerances(1e-12, 1e-12).count(20);
+    let run = run.run(rough).expect("a run");
+    for y in &run.points {
+        assert!((y.transpose() * y - Matrix3::identity()).norm() < 1e-14, "{y}");
+    }
+    assert!((run.points[0] - rough).norm() < 1e-7);
+    // One that has all digits stays as it is, to the bit.
+    let fine = exp(&Vector3::new(1.0, 2.0, 3.0)).expect("an angle");
+    let run = Solve::new(&flow, &method, [0.0, 5.0]).tolerances(1e-12, 1e-12).count(1);
+    assert_eq!(run.run(fine).expect("a run").points[0], fine);
+}

@@ -6,12 +6,15 @@ use std::time::Instant;
 use lieflow::Error;
 use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
+use pyo3::types::PyTuple;
 
 use crate::error::{argument, words};
 use crate::run::SIGNALS;
 
 /// From this number of elements on a map releases the interpreter.
 const MANY: usize = 512;
+/// A result of more numbers may not fit into memory.
+const LARGE: usize = 1 << 24;
 
 /// An argument: its numbers in C order, and the shape of its leading axes.
 pub(crate) struct Input<'py> {
@@ -125,6 +128,11 @@ pub(crate) fn output<'py>(
     shape[..lead.len()].copy_from_slice(lead);
     shape[lead.len()..].copy_from_slice(tail);
     let Some(out) = out.filter(|out| !out.is_none()) else {
+        if shape.iter().try_fold(1usize, |size, n| size.checked_mul(*n)).is_none_or(|n| n > LARGE) {
+            // NumPy's own function has an error for memory that is not there.
+            let empty = py.import("numpy")?.call_method1("empty", (PyTuple::new(py, &*shape)?,))?;
+            return Ok(empty.cast_into::<PyArrayDyn<f64>>()?);
+        }
         // SAFETY: every number is written before the array is returned, or the array is dropped with an exception.
         return Ok(unsafe { PyArrayDyn::<f64>::new(py, &*shape, false) });
     };

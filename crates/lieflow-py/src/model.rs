@@ -349,9 +349,9 @@ impl Model {
         all_methods().map(|info| info.name).filter(|name| fits(name)).collect()
     }
     /// The order of the steps of a method, None if they are exact, and of the points within a step.
-    fn orders(&self, py: Python<'_>, method: &str) -> PyResult<(Option<usize>, usize)> {
+    fn orders(&self, py: Python<'_>, method: &str) -> PyResult<(Option<usize>, Option<usize>)> {
         let (_, orders) = self.method(py, method)?;
-        Ok((orders.step, orders.within))
+        Ok((orders.step, Some(orders.within).filter(|order| *order != usize::MAX)))
     }
     /// True if the points within its steps can be kept as numbers: of steps of given size, and of steps by error.
     fn keeps_points(&self, py: Python<'_>, method: &str) -> PyResult<[bool; 2]> {
@@ -490,7 +490,8 @@ impl Model {
         let start = start.as_ref().map(|start| start.as_slice()).transpose()?;
         let numbers = || self.numbers(&spec, start);
         let steps = settings.steps(py, t_span, (orders, numbers), "Integrator")?;
-        let run = StepByStep { steps, stops: settings.stops(), start };
+        let (stops, max_steps) = (settings.stops(), settings.max_steps);
+        let run = StepByStep { steps, stops, start, max_steps };
         let run = self.model.stepper(&spec, run);
         Stepper::new(py, run, &[self.width()], (Arc::default(), false))
     }

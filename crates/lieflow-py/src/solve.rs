@@ -7,7 +7,7 @@ use lieflow::catalog::MethodSpec;
 use lieflow::samples::{Interpolation, Samples};
 use lieflow::{Error, SaveAt};
 use lieflow_model::kinds::own::{self, Frame, GroupName, Own, OwnEvent, OwnField, OwnPlan, Ran};
-use lieflow_model::problem::{Change, Steps};
+use lieflow_model::problem::{Change, StepByStep, Steps};
 use numpy::{PyArrayDyn, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -113,7 +113,9 @@ impl Space {
     ) -> PyResult<Stepper> {
         let raised = Arc::new(Raised::default());
         let ready = Ready::new(py, self, field, method, (t_span, &y0, &settings), &raised)?;
-        let run = ready.problem.stepper(&ready.spec, &y0, (ready.steps, settings.stops()));
+        let (stops, max_steps) = (settings.stops(), settings.max_steps);
+        let run = StepByStep { steps: ready.steps, stops, start: None, max_steps };
+        let run = ready.problem.stepper(&ready.spec, &y0, run);
         if let Some(error) = raised.take() {
             return Err(error);
         }

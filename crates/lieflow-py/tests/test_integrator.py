@@ -188,3 +188,26 @@ def test_arguments_are_named_and_copied():
     start[:] = 7.0
     run.advance_to(1.0)
     assert (pickle.loads(pickle.dumps(run)).y == run.y).all()
+
+
+def test_the_limit_of_attempts_is_that_of_a_call():
+    run = lf.Integrator(BODY, "rkmk4 exp", dt=0.01, max_steps=100)
+    for k in range(1, 30):
+        run.advance_to(0.9 * k)
+    assert run.nsteps > 2000
+    with pytest.raises(RuntimeError, match="100 attempts did not reach the end.*raise max_steps"):
+        run.advance_to(100.0)
+    run.advance_to(run.t + 0.5)
+    field = lf.Integrator(lf.Field("SO(3)", ["0", "0", "1"]), "rkmk4 exp", frame="body", y0=np.eye(3), dt=0.01, max_steps=100)
+    with pytest.raises(RuntimeError, match="100 attempts"):
+        field.advance_to(100.0)
+
+
+def test_a_refused_time_within_a_step_is_explained():
+    run = lf.Integrator(lambda t, y: [0.0, 0.0, 1.0], None, (0, 10), np.eye(3), **ROTATION)
+    run.step()
+    middle = run.t / 2
+    run.interpolate(middle)
+    run.y = run.y
+    with pytest.raises(lf.ArgumentError, match="the last step is not known"):
+        run.interpolate(middle)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+import threading
 
 import numpy as np
 import pytest
@@ -230,3 +231,70 @@ def test_rounding_that_two_runs_share_has_an_error():
 
     result = lf.solve_ivp(quiet, (0, 10), {"y": [1.0, 0.0]}, group=plane, rtol=1e-12, atol=1e-12)
     assert result.estimate_error().y["y"] < 1e-11
+
+
+def test_the_rest_of_a_solution_is_computed_once_by_many_threads():
+    body, failures = lf.RigidBody(inertia=[1, 2, 3], omega_body=[0.01, 1, 0]), []
+    for _ in range(30):
+        event = lf.Event("w2", terminal=1)
+        sol = lf.solve_ivp(body, (0, 20), events=event, dense_output=True, quantities=["omega_body"]).sol
+        assert sol.t_max == 20.0
+        barrier = threading.Barrier(8)
+
+        def look(k, sol=sol, barrier=barrier):
+            barrier.wait()
+            try:
+                sol(np.linspace(0, 20, 500 + k))
+            except Exception as error:  # noqa: BLE001
+                failures.append(error)
+
+        threads = [threading.Thread(target=look, args=(k,)) for k in range(8)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+    assert not failures
+
+
+def test_a_solution_goes_on_after_an_event_at_the_start():
+    body = lf.RigidBody(inertia=[1, 2, 3], omega_body=[0.1, 1, 0.0])
+    result = lf.solve_ivp(body, (0, 10), events=lf.Event("w3", terminal=1), dense_output=True)
+    assert result.t_end == 0.0 and result.sol.t_max == 10.0
+    assert np.abs(result.sol(5.0).attitude - body.exact(5.0).attitude).max() < 1e-12
+
+
+def test_a_run_without_outputs_has_the_error_of_its_end():
+    def f(t, y):
+        return [np.sin(t), np.cos(3 * t), 1.0]
+
+    run = {"group": "SO(3)", "frame": "body", "method": "rkmk4 exp", "dt": 0.5}
+    none = lf.solve_ivp(f, (0, 1), np.eye(3), t_eval=[], **run).estimate_error().y
+    one = lf.solve_ivp(f, (0, 1), np.eye(3), t_eval=[1.0], **run).estimate_error().y
+    assert none == one > 1e-6
+    body = lf.RigidBody(inertia=[1, 2, 3], omega_body=[0.1, 1, 0.2])
+    assert lf.solve_ivp(body, (0, 1), t_eval=[], method="rkmk4 exp", dt=0.1).estimate_error().y["attitude"] > 1e-9
+    with pytest.raises(lf.RunError, match="no outputs"):
+        lf.solve_ivp(body, (0, 9), t_eval=[], events=lf.Event("w2", terminal=1)).estimate_error()
+
+
+def test_names_of_parts_are_not_those_of_a_result():
+    result = lf.solve_ivp(lambda t, y: {"x": [1.0]}, (0, 1), {"x": [0.0]}, group=lf.Parts(x="numbers 1"))
+    taken = {name for name in [*dir(result), *result.keys()] if not name.startswith("_")} - {"x", "y"}
+    for name in taken:
+        with pytest.raises(lf.ArgumentError, match="another name"):
+            lf.Parts(**{name: "number"})
+
+
+def test_angles_of_subspaces_have_their_digits_at_both_ends():
+    a, x = np.diag([4.0, 3, 1, 0]), np.array([[1.0, 0], [0, 1e-3], [1, 0], [0, 1]])
+    for end in (-3.0, -6.0, 6.0):
+        angles = lf.solve_ivp(lf.Subspace(a=a, x=x), (0, end), quantities=["angles"], t_eval=[end]).angles[-1]
+        # The planes of the first and the third axis, and of the others, turn apart from each other.
+        right = np.sort(np.arctan(np.exp(-3 * end) * np.array([1.0, 1000.0])))[::-1]
+        assert np.abs(angles - right).max() < 1e-13
+        assert np.abs((np.pi / 2 - angles) / np.tan(np.pi / 2 - right) - 1).max() < 1e-5 or end > 0
+
+
+def test_memory_that_is_not_there_is_an_error():
+    with pytest.raises(MemoryError):
+        lf.SO(3).random(10**15)

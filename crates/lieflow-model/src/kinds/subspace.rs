@@ -88,12 +88,17 @@ impl Subspace {
         b
     }
     fn angles(&self, p: &Mat<f64>) -> Vec<f64> {
-        let v2 = self.eigenvectors.get(.., ..self.start.nrows() - self.dimension);
-        let sines = singular_values(multiply(v2.transpose(), p.as_ref()).as_ref());
-        let sines = sines.unwrap_or_else(|_| vec![f64::NAN; v2.ncols()]);
-        let angles = sines.iter().map(|sine| sine.min(1.0).asin());
+        let others = self.start.nrows() - self.dimension;
+        let (v2, v1) = (self.eigenvectors.get(.., ..others), self.eigenvectors.get(.., others..));
+        // Those of the projections of P, the largest first.
+        let [sines, cosines] = [v2, v1].map(|v| {
+            let values = singular_values(multiply(v.transpose(), p.as_ref()).as_ref());
+            values.unwrap_or_else(|_| vec![f64::NAN; v.ncols()])
+        });
         // What a subspace shares with the leading one, it shares at the angle 0.
-        angles.chain(core::iter::repeat(0.0)).take(self.dimension).collect()
+        let sines = sines.iter().copied().chain(core::iter::repeat(0.0)).take(self.dimension);
+        let cosines = cosines.iter().copied().take(self.dimension).rev();
+        sines.zip(cosines).map(|(sine, cosine)| sine.atan2(cosine)).collect()
     }
 }
 

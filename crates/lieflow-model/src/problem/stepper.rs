@@ -73,11 +73,13 @@ pub struct StepByStep<'a> {
     pub stops: Stops,
     /// The numbers of another point to start from ([`Model::start`](super::Model::start) has their order).
     pub start: Option<&'a [f64]>,
+    /// The limit of the attempts of a call, where it is not that of the library.
+    pub max_steps: Option<u64>,
 }
 
 impl From<Steps> for StepByStep<'_> {
     fn from(steps: Steps) -> Self {
-        StepByStep { steps, stops: Stops::default(), start: None }
+        StepByStep { steps, stops: Stops::default(), start: None, max_steps: None }
     }
 }
 
@@ -129,7 +131,7 @@ pub(crate) fn stepper_by<P: Runnable>(
     spec: &MethodSpec,
     problem: &Arc<P>,
     mut y: PointOf<P>,
-    StepByStep { steps, stops, start }: StepByStep<'_>,
+    StepByStep { steps, stops, start, max_steps }: StepByStep<'_>,
     points: Points<P>,
 ) -> Result<Box<dyn Stepper>, RunError>
 where
@@ -144,6 +146,10 @@ where
     let solve = match steps {
         Steps::Equal(grid) => solve.grid(grid),
         Steps::ByError { control, .. } => solve.control(control),
+    };
+    let solve = match max_steps {
+        Some(attempts) => solve.max_steps(attempts),
+        None => solve,
     };
     let run = solve.integrator(y.clone())?;
     Ok(Box::new(Typed { run, at: y, points }))

@@ -162,6 +162,13 @@ class Samples:
         return (Samples, (self.t, self.values, self.interpolation, self.names))
 
 
+#: What a result has, which no part can be called. A part `y` is `r.y["y"]`.
+TAKEN = frozenset(
+    "sol t t_events y_events t_end y_end nfev nsteps nrejected restored residual unsure_steps status message success drift "
+    "largest_step smallest_step keys check as_rotation to_dataframe estimate_error".split()
+)
+
+
 class Parts:
     """A system of rotations, vectors and numbers, as the ``group`` of a run. Then y is a dict of arrays.
 
@@ -185,6 +192,8 @@ class Parts:
         self.spaces = spaces
         sizes: dict[str, tuple[int, int, tuple[int, ...]]] = {}
         for name, space in spaces.items():
+            if name in TAKEN:
+                raise ArgumentError("spaces", repr(name), "another name: a result of a run has this one")
             if not isinstance(space, str):
                 raise TypeError(f"{name}: a value of type {type(space).__name__}, expected the name of a space")
             word, _, count = space.partition(" ")

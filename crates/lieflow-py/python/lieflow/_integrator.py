@@ -35,8 +35,8 @@ class Integrator:
     y0 : array_like, optional
         The start; of a problem the numbers of another state, or the complex array of one that is complex.
     **options
-        rtol, atol, first_step, min_step, max_step, dt, steps, stops, args, group, action, frame, linear, and for a problem
-        quantities, as in :func:`lieflow.solve_ivp`.
+        rtol, atol, first_step, min_step, max_step, max_steps, dt, steps, stops, args, group, action, frame, linear, and for a
+        problem quantities, as in :func:`lieflow.solve_ivp`. max_steps is the limit of attempts of each call.
 
     Examples
     --------
@@ -68,7 +68,7 @@ class Integrator:
             (problem, method, t_span, copy.deepcopy(y0)),
             {"args": args, "group": group, "action": action, "frame": frame, "linear": linear, "quantities": quantities, **steps},
         )
-        known = ("rtol", "atol", "first_step", "min_step", "max_step", "dt", "steps", "stops")
+        known = ("rtol", "atol", "first_step", "min_step", "max_step", "max_steps", "dt", "steps", "stops")
         for name in steps:
             if name not in known:
                 raise TypeError(f"{name}: not an argument of Integrator, expected one of {', '.join(known)}")

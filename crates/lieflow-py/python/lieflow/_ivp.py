@@ -618,10 +618,10 @@ def _of_problem(
             whole: _lieflow.Curve | None = model.solve(method, span, start, settings, None, on, None)["curve"]
             return curve if whole is None else whole
 
-        sol._rest = rest
+        sol._rest = span[1], rest
 
     def again(result: Result) -> tuple[str, Result, Result | None]:
-        plain = y0 is None and not any(event.change for event in events)
+        plain = y0 is None and len(result.t) > 0 and not any(event.change for event in events)
         # Euler angles and quaternions are those of the rows, up to turns and signs.
         found = model.exact(span[0], result.t, method, rows) if plain else None
         exact = None if found is None else layout.split(found)

@@ -130,8 +130,8 @@ class Problem:
         """Return the names of the methods that run on it."""
         return tuple(self._model(self.asked(quantities), ()).methods())
 
-    def orders(self, method: str) -> tuple[int | None, int]:
-        """Return the order of the steps of a method, None if they are exact, and the order of its dense output."""
+    def orders(self, method: str) -> tuple[int | None, int | None]:
+        """Return the order of the steps of a method, and that of its dense output; None for one that is exact."""
         return self._model(self.quantities).orders(method)
 
     def exact(self, t: ArrayLike, quantities: Sequence[str] | str | None = None, *, t0: float = 0.0) -> Quantities | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Iterator
+from threading import RLock
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -83,43 +84,52 @@ class OdeSolution:
     and this rest is computed when it is asked for; a pickled solution has what was computed.
     """
 
-    __slots__ = ("_curve", "_layout", "_made_by", "_rest")
+    __slots__ = ("_curve", "_layout", "_lock", "_made_by", "_rest")
 
     def __init__(
         self,
         curve: _lieflow.Curve,
         made_by: tuple[Any, ...],
         layout: Layout | Parts | ComplexPoints | None,
-        rest: Callable[[], _lieflow.Curve] | None = None,
+        rest: tuple[float, Callable[[], _lieflow.Curve]] | None = None,
     ) -> None:
+        # The rest is the end of the span, and what computes the curve to there.
         self._curve, self._made_by, self._layout, self._rest = curve, made_by, layout, rest
+        self._lock = RLock()
 
     def __call__(self, t: ArrayLike) -> Any:
         """Return the points at t."""
-        if self._rest is not None:
-            times, (start, end) = np.asarray(t), self._curve.t_span
-            if times.size and times.dtype.kind in "fiu" and bool(((times - end) * (end - start) > 0).any()):
-                self._curve, self._rest = self._rest(), None
+        rest = self._rest
+        if rest is not None:
+            times, end = np.asarray(t), self._curve.t_span[1]
+            if times.size and times.dtype.kind in "fiu" and bool(((times - end) * (rest[0] - end) > 0).any()):
+                with self._lock:
+                    if self._rest is not None:  # no other thread was faster
+                        self._curve, self._rest = rest[1](), None
         rows = self._curve.at(t)
         return rows if self._layout is None else self._layout.split(rows)
+
+    def _span(self) -> tuple[float, float]:
+        rest, (start, end) = self._rest, self._curve.t_span
+        return (start, end) if rest is None else (start, rest[0])
 
     @property
     def t_min(self) -> float:
         """The smallest time."""
-        return min(self._curve.t_span)
+        return min(self._span())
 
     @property
     def t_max(self) -> float:
         """The largest time."""
-        return max(self._curve.t_span)
+        return max(self._span())
 
     @property
     def n_segments(self) -> int:
-        """The number of steps."""
+        """The number of steps that are computed."""
         return self._curve.steps
 
     def __repr__(self) -> str:
-        start, end = self._curve.t_span
+        start, end = self._span()
         return f"<lieflow.OdeSolution from t = {start} to {end}, {self.n_segments} steps>"
 
     def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
@@ -342,8 +352,11 @@ class Result:
         changes = [self.t_events[i] for i in self._changes]
         rows = ~np.isin(self.t, np.concatenate([*changes, []]))
         rows = rows if rows.any() else np.ones_like(rows)
-        if isinstance(self.y, Quantities):
-            y: Any = {
+        y: Any
+        if not len(self.t):
+            y = self._error_at_end(other, grown)
+        elif isinstance(self.y, Quantities):
+            y = {
                 name: _error(x[rows], other.y[name][rows], None if grown is None else grown.y[name][rows])
                 for name, x in self.y.items()
             }
@@ -360,6 +373,20 @@ class Result:
 
         times = [apart(own, others) for own, others in zip(self.t_events, other.t_events)]
         return ErrorEstimate(found_by, y, times)
+
+    def _error_at_end(self, other: Result, grown: Result | None) -> Any:
+        """The error of y_end, where a run has no outputs."""
+        if self.status != 0 or self.y_end is None or self._changes:
+            raise RunError("no estimate: the run has no outputs, and it did not end at the end of its span without changes")
+
+        ends = [self.y_end, other.y_end] if grown is None else [self.y_end, other.y_end, grown.y_end]
+
+        def error(first: Any, second: Any, changed: Any = None) -> float:
+            return _error(first[None], second[None], None if changed is None else changed[None])
+
+        if isinstance(self.y_end, np.ndarray):
+            return error(*ends)
+        return {name: error(*[end[name] for end in ends]) for name in self.y_end.keys()}
 
     def keys(self) -> list[str]:
         """Return the names of what the result has, for ``r["y"]`` and ``dict(r)``."""

@@ -104,8 +104,8 @@ impl System for Fluid {
         Q::numbers(
             "coefficients",
             &["w1", "…", "wNN"],
-            "coefficients of the harmonics, by degree l and then by order -l to l; on the torus a and b of the \
-             waves of one of every m and -m, by m1 and then by m2",
+            "coefficients of the harmonics, by degree l and then by order -l to l; on the torus a0_1 b0_1 …, a \
+             and b of the waves of one of every m and -m, by m1 and then by m2",
             |fluid, _, w, row| row.extend(fluid.fluid.surface().coefficients(w)),
         )
         .with_columns(|fluid| fluid.fluid.surface().coefficient_names()),

@@ -41,7 +41,7 @@ pub use self::run::{Curve, End, OwnEvent, OwnPlan, Ran, Run};
 use super::algebra::Algebra;
 use super::composed::group_of;
 use super::matrix::MatrixAction;
-use crate::problem::{Orders, Stepper, Steps, Stops};
+use crate::problem::{Orders, StepByStep, Stepper};
 
 /// f: writes the value at (t, y) into the last slice, which is 0 before. It returns false to end the run at once.
 pub type OwnField = dyn Fn(f64, &[f64], &mut [f64]) -> bool + Send + Sync;
@@ -421,7 +421,7 @@ impl Own {
         &self,
         method: &MethodSpec,
         y0: &[f64],
-        steps: (Steps, Stops),
+        steps: StepByStep<'_>,
     ) -> Result<Box<dyn Stepper>, RunError> {
         self.run.stepper(method, y0, steps)
     }

@@ -132,7 +132,7 @@ pub trait Run: Send + Sync {
         &self,
         method: &MethodSpec,
         y0: &[f64],
-        steps: (Steps, Stops),
+        steps: StepByStep<'_>,
     ) -> Result<Box<dyn Stepper>, RunError>;
     /// As [`Own::curve`](super::Own::curve).
     ///
@@ -402,7 +402,7 @@ where
         &self,
         method: &MethodSpec,
         y0: &[f64],
-        steps: (Steps, Stops),
+        steps: StepByStep<'_>,
     ) -> Result<Box<dyn Stepper>, RunError> {
         let (layout, problem) = (self.layout, self.problem.clone());
         let [size, _] = layout.sizes(problem.group());
@@ -417,8 +417,6 @@ where
             Ok(())
         };
         let points = Points::by_rows(Box::new(show), Box::new(point));
-        let (steps, stops) = steps;
-        let steps = StepByStep { steps, stops, start: None };
         stepper_by(method, &self.problem, start, steps, points)
     }
 
