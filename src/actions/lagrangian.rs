@@ -12,6 +12,8 @@ use crate::groups::{AlgebraMatrix, GroupMatrix, MatrixGroup, OFF_M_MAX, check_en
 use crate::maps::CoordinateMap;
 use crate::maps::PsiOf;
 use crate::scalar::{Ops, tally};
+use crate::space::Metric;
+use crate::tolerance::{Scales, Tolerance};
 
 /// Λ(g, P) = (C + DP)(A + BP)⁻¹ on symmetric m×m matrices.
 ///
@@ -118,6 +120,30 @@ impl Action<MatrixGroup> for Lagrangian {
         dp.copy_from(c);
         mul_add(dp, 1.0, d, p.as_ref());
         mul_add(dp, -1.0, p.as_ref(), denominator.as_ref());
+    }
+    /// e moves P by at most ‖c‖ + (‖a‖ + ‖d‖)‖P‖ + ‖b‖‖P‖².
+    fn error_ratio(
+        &self,
+        _: &MatrixGroup,
+        e: &AlgebraMatrix,
+        p: &Mat<f64>,
+        scales: &mut Scales<'_>,
+    ) -> f64 {
+        let ([a, b, c, d], size) = (blocks(e).map(|block| block.norm_l2()), p.size());
+        let moved = c + (a + d + b * size) * size;
+        tally(|| Ops::dots(4, p.nrows() * p.ncols()) + Ops::sqrts(5) + Ops::muladds(3));
+        scales.part().ratio_in_any_direction(moved, p)
+    }
+    /// A step from a pole of P, or to one, has the error of its other end: P has no digits at a pole, and has them after it.
+    fn error_ratio_of_step(
+        &self,
+        group: &MatrixGroup,
+        e: &AlgebraMatrix,
+        ends: [&Mat<f64>; 2],
+        tolerance: &Tolerance,
+    ) -> f64 {
+        let [at_y, at_z] = ends.map(|p| self.error_ratio(group, e, p, &mut tolerance.scales()));
+        at_y.min(at_z)
     }
     fn lambda<Psi: CoordinateMap<MatrixGroup>>(
         &self,

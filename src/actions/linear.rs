@@ -7,6 +7,7 @@ use crate::error::{Error, StepError};
 use crate::groups::LieGroup;
 use crate::maps::CoordinateMap;
 use crate::maps::PsiOf;
+use crate::tolerance::Scales;
 
 /// The standard representation: ẋ = f(x)·x.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -31,6 +32,16 @@ impl<G: LieGroup> Action<G> for Linear {
     #[inline]
     fn generate(&self, group: &G, v: &G::Alg, x: &G::Vector, dx: &mut G::Vector, _: &mut ()) {
         group.apply_algebra(v, x, dx);
+    }
+    #[inline]
+    fn error_ratio(
+        &self,
+        group: &G,
+        e: &G::Alg,
+        x: &G::Vector,
+        scales: &mut Scales<'_>,
+    ) -> G::Scalar {
+        group.vector_error_ratio(e, x, scales)
     }
     #[inline(always)]
     fn lambda<Psi: CoordinateMap<G>>(

@@ -28,8 +28,9 @@ use crate::error::{Error, StepError};
 use crate::groups::LieGroup;
 use crate::maps::CoordinateMap;
 use crate::maps::PsiOf;
+use crate::scalar::Real;
 use crate::space::{Gap, Metric};
-use crate::tolerance::Scales;
+use crate::tolerance::{Scales, Tolerance};
 
 /// A left action Λ of G on M: Λ(𝟙, p) = p and Λ(ab, p) = Λ(a, Λ(b, p)).
 pub trait Action<G: LieGroup>: Send + Sync {
@@ -93,7 +94,8 @@ pub trait Action<G: LieGroup>: Send + Sync {
     );
 
     /// An error e ∈ 𝔤 at y in units of the tolerance: the largest of the ratios of the parts. By default ‖e‖ is a
-    /// relative error: ‖e‖‖y‖/(atol + rtol·‖y‖).
+    /// relative error: ‖e‖‖y‖/(atol + rtol·‖y‖). That is right where λ_*(e) moves each part of y by at most ‖e‖ times its
+    /// size; an action that moves a part by the size of another one has a formula of its own.
     #[inline]
     fn error_ratio(
         &self,
@@ -103,6 +105,23 @@ pub trait Action<G: LieGroup>: Send + Sync {
         scales: &mut Scales<'_>,
     ) -> G::Scalar {
         y.error_ratio(Gap::relative(group.norm(e)), scales)
+    }
+
+    /// An error e ∈ 𝔤 of a step from y to z in units of the tolerance. By default that at y; at z where y is 0 and has no
+    /// tolerance.
+    #[inline]
+    fn error_ratio_of_step(
+        &self,
+        group: &G,
+        e: &G::Alg,
+        [y, z]: [&Self::Point; 2],
+        tolerance: &Tolerance,
+    ) -> G::Scalar {
+        let ratio = self.error_ratio(group, e, y, &mut tolerance.scales());
+        match ratio.is_finite() {
+            true => ratio,
+            false => self.error_ratio(group, e, z, &mut tolerance.scales()),
+        }
     }
 
     /// q ← λ_p(u) = Λ(Ψ(u), p), equation (6).

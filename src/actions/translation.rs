@@ -19,16 +19,6 @@ macro_rules! on_the_group {
         fn assign(&self, group: &G, p: &G::Elem, q: &mut G::Elem) {
             group.assign(p, q);
         }
-        #[inline]
-        fn error_ratio(
-            &self,
-            group: &G,
-            e: &G::Alg,
-            g: &G::Elem,
-            scales: &mut Scales<'_>,
-        ) -> G::Scalar {
-            group.error_ratio(e, g, scales)
-        }
     };
 }
 
@@ -45,6 +35,16 @@ impl<G: LieGroup> Action<G> for LeftTranslation {
         [group.identity(), group.identity()]
     }
     on_the_group!();
+    #[inline]
+    fn error_ratio(
+        &self,
+        group: &G,
+        e: &G::Alg,
+        g: &G::Elem,
+        scales: &mut Scales<'_>,
+    ) -> G::Scalar {
+        group.error_ratio(e, g, scales)
+    }
     #[inline]
     fn act(&self, group: &G, g: &G::Elem, p: &G::Elem, q: &mut G::Elem, _: &mut Self::Work) {
         group.compose(g, p, q);
@@ -85,6 +85,16 @@ impl<G: Adjoint> Action<G> for RightTranslation {
         RightWork { inverse: one(), inverting, minus, restore: [one(), one()] }
     }
     on_the_group!();
+    #[inline]
+    fn error_ratio(
+        &self,
+        group: &G,
+        e: &G::Alg,
+        g: &G::Elem,
+        scales: &mut Scales<'_>,
+    ) -> G::Scalar {
+        group.error_ratio_in_body(e, g, scales)
+    }
     #[inline]
     fn act(&self, group: &G, g: &G::Elem, p: &G::Elem, q: &mut G::Elem, work: &mut RightWork<G>) {
         // A singular g is not in G; its numbers are not finite, and the step ends with that.
@@ -127,6 +137,19 @@ impl<G: Adjoint> Action<G> for Translation {
         RightTranslation.work(group)
     }
     on_the_group!();
+    #[inline]
+    fn error_ratio(
+        &self,
+        group: &G,
+        e: &G::Alg,
+        g: &G::Elem,
+        scales: &mut Scales<'_>,
+    ) -> G::Scalar {
+        match self {
+            Translation::Left => group.error_ratio(e, g, scales),
+            Translation::Right => group.error_ratio_in_body(e, g, scales),
+        }
+    }
     #[inline]
     fn act(&self, group: &G, g: &G::Elem, p: &G::Elem, q: &mut G::Elem, work: &mut RightWork<G>) {
         match self {

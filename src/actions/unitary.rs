@@ -17,6 +17,7 @@ impl Action<Unitary> for Conjugation {
         group.zero()
     }
     fn check(&self, group: &Unitary, p: &ComplexMatrix) -> Result<(), Error> {
+        p.check("p", group.n(), group.n())?;
         group.check("p", p)
     }
     #[inline]

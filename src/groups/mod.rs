@@ -129,6 +129,16 @@ pub trait LieGroup: LieAlgebra {
     fn error_ratio(&self, e: &Self::Alg, _g: &Self::Elem, scales: &mut Scales<'_>) -> Self::Scalar {
         scales.part().ratio(self.norm(e), Self::Scalar::lit(1.0))
     }
+    /// The same of an error e ∈ 𝔤 that acts from the right, g·exp(e).
+    #[inline]
+    fn error_ratio_in_body(
+        &self,
+        e: &Self::Alg,
+        g: &Self::Elem,
+        scales: &mut Scales<'_>,
+    ) -> Self::Scalar {
+        self.error_ratio(e, g, scales)
+    }
     /// An error e ∈ 𝔤 at a vector in units of the tolerance: ‖e‖‖x‖/(atol + rtol·‖x‖).
     #[inline]
     fn vector_error_ratio(

@@ -129,6 +129,16 @@ impl<A: LieGroup, B: LieGroup<Scalar = A::Scalar>> LieGroup for Product<A, B> {
         larger(first, self.1.error_ratio(&e.1, &g.1, scales))
     }
     #[inline]
+    fn error_ratio_in_body(
+        &self,
+        e: &Self::Alg,
+        g: &Self::Elem,
+        scales: &mut Scales<'_>,
+    ) -> A::Scalar {
+        let first = self.0.error_ratio_in_body(&e.0, &g.0, scales);
+        larger(first, self.1.error_ratio_in_body(&e.1, &g.1, scales))
+    }
+    #[inline]
     fn vector_error_ratio(
         &self,
         e: &Self::Alg,

@@ -137,6 +137,9 @@ impl LieGroup for UnitQuaternions {
     fn is_finite_vector(&self, x: &Vector3<f64>) -> bool {
         SO3.is_finite(x)
     }
+    fn correct_vector(&self, from: &Vector3<f64>, x: &mut Vector3<f64>) -> Option<f64> {
+        SO3.correct_vector(from, x)
+    }
     #[inline]
     fn correct(&self, q: &mut UnitQuaternion<f64>, _: [&mut UnitQuaternion<f64>; 2]) -> f64 {
         let gap = q.coords.norm_squared() - 1.0;

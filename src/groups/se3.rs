@@ -151,6 +151,12 @@ impl<S: Real> LieGroup for Se3<S> {
         let moved = e.1 + cross(&e.0, &g.1);
         larger(turned, g.1.error_ratio(Gap::of(&moved), scales))
     }
+    /// g·exp(e) is at the place p + Rv: the size of p does not matter.
+    #[inline]
+    fn error_ratio_in_body(&self, e: &Self::Alg, g: &Self::Elem, scales: &mut Scales<'_>) -> S {
+        let turned = scales.part().ratio(e.0.size(), S::lit(1.0));
+        larger(turned, g.1.error_ratio(Gap::of(&apply3(&g.0, &e.1)), scales))
+    }
     #[inline]
     fn vector_error_ratio(&self, e: &Self::Alg, x: &Vector3<S>, scales: &mut Scales<'_>) -> S {
         x.error_ratio(Gap::of(&(e.1 + cross(&e.0, x))), scales)

@@ -50,8 +50,6 @@ pub trait Embedded<P: Problem>: Method<P> {
 }
 
 /// The ratio of an error e ∈ 𝔤 of a step from y to z, whose increment has this length.
-///
-/// A part that begins at 0 has no tolerance at y, where atol is 0. Then that of z counts.
 #[inline]
 pub(crate) fn ratio_in_algebra<P: Problem>(
     problem: &P,
@@ -61,13 +59,9 @@ pub(crate) fn ratio_in_algebra<P: Problem>(
     length: ScalarOf<P>,
 ) -> ScalarOf<P> {
     let group = problem.group();
-    let at = |y| problem.action().error_ratio(group, e, y, &mut tolerance.scales());
     match tolerance.rule() {
         Rule::PerLength => ratio(group.norm(e), tolerance.per_length(length)),
-        Rule::PerStep => {
-            let ratio = at(y);
-            if ratio.is_finite() { ratio } else { at(z) }
-        }
+        Rule::PerStep => problem.action().error_ratio_of_step(group, e, [y, z], tolerance),
     }
 }
 

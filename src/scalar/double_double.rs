@@ -12,7 +12,10 @@ use super::{Real, Select, Trig};
 
 /// hi + lo, with |lo| at most half an ulp of hi.
 ///
-/// The closed forms of the library run on it, and all methods that are generic in the number type:
+/// The closed forms of the library run on it, and the methods that are generic in the number type. Magnus methods and Lie
+/// series have its digits. Coefficients of Runge–Kutta tableaus and of Padé approximants are f64, so steps by them are those
+/// of coefficients that are rounded: their results have 16 digits, and tolerances below that are not reached.
+///
 ///
 /// ```
 /// use lieflow::scalar::{DoubleDouble, Real};

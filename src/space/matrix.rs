@@ -5,6 +5,7 @@ use faer::Mat;
 use super::{Gap, GivenBy, LinearSpace, Metric, Numbers};
 use crate::dense;
 use crate::scalar::{Ops, tally};
+use crate::tolerance::PartTolerance;
 use crate::tolerance::Scales;
 
 impl Metric for Mat<f64> {
@@ -37,10 +38,21 @@ impl Metric for Mat<f64> {
                     part.largest(errors, entries(self))
                 }
                 GivenBy::Of(e) => part.largest(entries(e), entries(self)),
-                GivenBy::Relative(e) => part.largest(entries(self).map(|x| e * x), entries(self)),
+                GivenBy::Relative(e) => part.ratio_in_any_direction(e * self.size(), self),
+                GivenBy::Rounding(e) => part.largest(entries(self).map(|x| e * x), entries(self)),
             };
         }
         gap.ratio(self, part)
+    }
+}
+
+impl PartTolerance {
+    /// The ratio of an error of at most this length at a matrix: each entry may have all of it.
+    pub(crate) fn ratio_in_any_direction(&self, error: f64, at: &Mat<f64>) -> f64 {
+        match self.has_components() {
+            true => self.largest(entries(at).map(|_| error), entries(at)),
+            false => self.ratio(error, at.size()),
+        }
     }
 }
 

@@ -63,7 +63,8 @@ const OUT_OF_REACH: f64 = 1e-6;
 /// # Errors
 /// [`Error::OutOfRange`].
 pub fn check_within_reach<M: Metric>(tolerance: &Tolerance, y: &M) -> Result<(), Error> {
-    let rounding = Gap::relative(M::Scalar::lit(OUT_OF_REACH * M::Scalar::EPSILON));
+    let rounding = M::Scalar::lit(OUT_OF_REACH * M::Scalar::EPSILON);
+    let rounding = Gap { error: GivenBy::Rounding(rounding), from: None };
     let ratio = y.error_ratio(rounding, &mut tolerance.scales());
     if tolerance.rule() != Rule::PerStep || ratio.any_below(1.0) {
         return Ok(());
@@ -83,8 +84,10 @@ enum GivenBy<'a, M: Metric + ?Sized> {
     To(&'a M),
     /// The error itself.
     Of(&'a M),
-    /// A multiple of the size of each part.
+    /// A multiple of the size of each part, in any direction: each number may have all of it.
     Relative(M::Scalar),
+    /// A multiple of each number.
+    Rounding(M::Scalar),
 }
 
 impl<M: Metric + ?Sized> Clone for Gap<'_, M> {
@@ -111,7 +114,7 @@ impl<'a, M: Metric + ?Sized> Gap<'a, M> {
     pub fn of(e: &'a M) -> Self {
         Gap { error: GivenBy::Of(e), from: None }
     }
-    /// A multiple of the size of each part.
+    /// A multiple of the size of each part, in any direction.
     #[inline]
     pub fn relative(e: M::Scalar) -> Self {
         Gap { error: GivenBy::Relative(e), from: None }
@@ -132,6 +135,7 @@ impl<'a, M: Metric + ?Sized> Gap<'a, M> {
             GivenBy::To(x) => GivenBy::To(part(x)),
             GivenBy::Of(e) => GivenBy::Of(part(e)),
             GivenBy::Relative(e) => GivenBy::Relative(e),
+            GivenBy::Rounding(e) => GivenBy::Rounding(e),
         };
         Gap { error, from: self.from.map(part) }
     }
@@ -141,7 +145,7 @@ impl<'a, M: Metric + ?Sized> Gap<'a, M> {
         match self.error {
             GivenBy::To(x) => at.distance(x),
             GivenBy::Of(e) => e.size(),
-            GivenBy::Relative(e) => e * size,
+            GivenBy::Relative(e) | GivenBy::Rounding(e) => e * size,
         }
     }
     /// The ratio of the error of a whole part.
@@ -280,7 +284,11 @@ macro_rules! small {
                     return match gap.error {
                         GivenBy::To(x) => part.largest((self - x).iter().copied(), entries()),
                         GivenBy::Of(e) => part.largest(e.as_slice().iter().copied(), entries()),
-                        GivenBy::Relative(e) => part.largest(entries().map(|x| e * x), entries()),
+                        GivenBy::Relative(e) => {
+                            let error = e * self.size();
+                            part.largest(entries().map(|_| error), entries())
+                        }
+                        GivenBy::Rounding(e) => part.largest(entries().map(|x| e * x), entries()),
                     };
                 }
                 gap.ratio(self, part)

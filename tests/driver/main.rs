@@ -18,3 +18,4 @@ mod streaks;
 #[path = "../support/mod.rs"]
 mod support;
 mod tolerances;
+mod weights;

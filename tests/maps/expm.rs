@@ -449,3 +449,11 @@ fn few_columns_agree_with_the_exponential() {
     }
     assert!(formed && series);
 }
+
+#[test]
+fn an_action_on_no_columns_takes_no_time() {
+    let u = Mat::from_fn(3, 3, |i, j| [[0.0, 1e9, 0.0], [-1e9, 0.0, 0.0], [0.0; 3]][i][j]);
+    let mut x = Mat::zeros(3, 0);
+    let choice = Exponential::new(3).apply(&u, Structure::General, &mut x).expect("nothing");
+    assert_eq!(choice, ApplyChoice::Series { steps: 0, products: 0 });
+}

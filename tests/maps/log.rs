@@ -276,3 +276,31 @@ fn hard_matrices() {
     let u = so.log(&so.element(g).expect("a rotation")).expect("log");
     assert!((u[(1, 0)] / 1e-200 - 1.0).abs() < 1e-15 && (u[(2, 3)] / 3e-310 - 1.0).abs() < 1e-12);
 }
+
+/// On SU(n) the angles of the eigenvalues may have another sum than 0, and then some are taken a turn farther. On U(n) the
+/// eigenvalue −1 may be repeated.
+#[test]
+fn logarithms_of_unitary_matrices() {
+    let mut rng = Pcg64::seed_from_u64(11);
+    for n in 2..=5 {
+        for group in [MatrixGroup::su(n), MatrixGroup::u(n)] {
+            let group = group.expect("a group");
+            for case in 0..200 {
+                let u = group.sample_algebra(&mut rng, 2.0);
+                let mut g = exp(&group, &u);
+                if case == 0 {
+                    // −𝟙, with the rounding of another basis.
+                    let minus = Mat::<f64>::identity(2 * n, 2 * n) * faer::Scale(-1.0);
+                    let minus = &*g * minus * g.transpose();
+                    match group.element(minus) {
+                        Ok(minus) => g = minus,
+                        Err(_) => continue, // its determinant is −1
+                    }
+                }
+                let log = group.log(&g).expect("a logarithm");
+                let gap = (&*exp(&group, &log) - &*g).norm_l2();
+                assert!(gap < 100.0 * n as f64 * EPS, "{} {case}: {gap:e}", group.name());
+            }
+        }
+    }
+}

@@ -22,6 +22,8 @@ use crate::maps::CoordinateMap;
 use crate::maps::PsiOf;
 use crate::scalar::Real;
 use crate::so3::{add3, cross, dot3, in_range};
+use crate::space::{Gap, Metric};
+use crate::tolerance::Scales;
 
 /// The coadjoint action Λ(g, m) = Ad*_{g⁻¹} m.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -105,6 +107,15 @@ impl Action<UnitQuaternions> for Coadjoint {
     ) {
         group.apply_algebra(v, m, dm);
     }
+    fn restore_to(
+        &self,
+        group: &UnitQuaternions,
+        from: &Vector3<f64>,
+        m: &mut Vector3<f64>,
+        _: &mut (),
+    ) -> Option<f64> {
+        group.correct_vector(from, m)
+    }
 }
 
 impl<S: Real> Action<Se3<S>> for Coadjoint {
@@ -140,6 +151,18 @@ impl<S: Real> Action<Se3<S>> for Coadjoint {
         _: &mut (),
     ) {
         *dm = (add3(&cross(omega, mu), &cross(v, pi)), cross(omega, pi));
+    }
+    /// e moves μ by ω × μ + v × π, which may be large beside μ.
+    #[inline]
+    fn error_ratio(
+        &self,
+        _: &Se3<S>,
+        (omega, v): &Self::Point,
+        y: &Self::Point,
+        scales: &mut Scales<'_>,
+    ) -> S {
+        let moved = (add3(&cross(omega, &y.0), &cross(v, &y.1)), cross(omega, &y.1));
+        y.error_ratio(Gap::of(&moved), scales)
     }
     /// The orbit is that of |π| and μ·π: π as a vector, then μ along π.
     fn restore_to(
@@ -200,5 +223,18 @@ impl<S: Real> Action<Se23<S>> for Coadjoint {
     ) {
         let arms = add3(&cross(v, pi), &cross(p, lambda));
         *dm = (add3(&cross(omega, mu), &arms), (cross(omega, pi), cross(omega, lambda)));
+    }
+    /// e moves μ by the size of π and λ.
+    #[inline]
+    fn error_ratio(
+        &self,
+        group: &Se23<S>,
+        e: &Self::Point,
+        y: &Self::Point,
+        scales: &mut Scales<'_>,
+    ) -> S {
+        let mut moved = *y;
+        self.generate(group, e, y, &mut moved, &mut ());
+        y.error_ratio(Gap::of(&moved), scales)
     }
 }

@@ -97,6 +97,10 @@ impl Exponential {
         if !norm.is_finite() {
             return Err(StepError::NotFinite { what: "the argument of exp" });
         }
+        // Without columns there is nothing to do, however large u is.
+        if k == 0 {
+            return Ok(ApplyChoice::Series { steps: 0, products: 0 });
+        }
         if 11.0 * norm.max(1.0) * k as f64 > 5.0 * n as f64 {
             let mut g = Mat::zeros(n, n);
             let choice = self.exp(u, structure, &mut g)?;

@@ -188,6 +188,10 @@ impl MatrixGroup {
         Ok(MatrixGroup { name: format!("SU({n})"), subgroup, ..Self::u(n)? })
     }
 
+    /// True if the determinant is 1 where the form leaves it free.
+    pub(crate) fn is_special(&self) -> bool {
+        self.subgroup.is_special
+    }
     /// True for U(n) and SU(n): the matrices are \[X −Y; Y X\].
     pub(crate) fn is_complex(&self) -> bool {
         self.subgroup.is_complex

@@ -158,10 +158,10 @@ impl LieGroup for Unitary {
         gram.distance(&self.identity())
     }
     fn check_elem(&self, g: &ComplexMatrix) -> Result<(), Error> {
-        self.shape("g", g, self.n)
+        g.check("g", self.n, self.n)
     }
     fn check_vector(&self, x: &ComplexMatrix) -> Result<(), Error> {
-        self.shape("x", x, x.ncols())
+        x.check("x", self.n, x.re.ncols())
     }
     fn is_finite_vector(&self, x: &ComplexMatrix) -> bool {
         LinearSpace::is_finite(x)

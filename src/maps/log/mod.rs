@@ -4,6 +4,7 @@
 //! | | how |
 //! |---|---|
 //! | ‖g − 𝟙‖₁ ≤ 0.264 | the \[7/7\] Padé approximant of log(𝟙 + x) by its partial fractions, x = g − 𝟙 |
+//! | U(n), SU(n) | complex Schur form, the angles of its diagonal; on SU(n) with the sum 0 |
 //! | SO(n) | real Schur form: planes turned by θ = atan2(sin θ, cos θ); eigenvalues −1 in pairs |
 //! | otherwise | complex Schur form, square roots of the triangle until the first case, scaled back |
 //! | eigenvalues −λ in pairs | the same for g(𝟙 − 2P), and a turn by π in each pair: `half_turns.rs` |
@@ -15,6 +16,7 @@ mod half_turns;
 mod rotation;
 mod schur;
 mod triangular;
+mod unitary;
 
 use faer::{Mat, c64};
 use triangular::Negative;
@@ -37,7 +39,8 @@ impl MatrixGroup {
     /// ±π where g has negative eigenvalues.
     ///
     /// On SO(n) every g has a logarithm: a pair of eigenvalues −1 is a turn by π in the plane of its
-    /// two Schur vectors, in the direction from the first to the second. So it is elsewhere with negative
+    /// two Schur vectors, in the direction from the first to the second. On SU(n) eigenvalues whose angles in (−π, π\] have
+    /// another sum than 0 have some of them outside of that: u has trace 0. So it is elsewhere with negative
     /// eigenvalues of even multiplicity that have as many eigenvectors, if 𝔤 has such a turn: one of
     /// several real logarithms then, continuous in g nowhere near. A g that is off the group by
     /// at most 1e-5 is taken for the nearby element, with an error of that size.
@@ -71,6 +74,8 @@ impl MatrixGroup {
         }
         let u = if norm1(x.as_ref()) <= THETA {
             near_identity(&x)
+        } else if self.is_complex() {
+            unitary::log(&g, self.is_special())?
         } else if matches!(self.form(), Form::Identity) {
             rotation::log(&g)?
         } else {

@@ -23,10 +23,10 @@ use crate::groups::{Adjoint, LieAlgebra, LieGroup, RESIDUAL_MAX, Se3, So3, hat};
 use crate::methods::embedded::ratio_of_relative;
 use crate::methods::{Embedded, Facts, MapCounts, Method, Metric, Step, Within};
 use crate::problems::{AlgOf, ElemOf, PointOf, ScalarOf, TaylorField};
-use crate::scalar::Real;
+use crate::scalar::{Real, larger};
 use crate::so3::{add3, all_finite, apply3, cross};
-use crate::space::Numbers;
-use crate::tolerance::Tolerance;
+use crate::space::{Gap, Numbers};
+use crate::tolerance::{Rule, Tolerance};
 
 /// A group whose elements lie in a linear space with products by elements of 𝔤.
 pub trait SeriesGroup: LieGroup<Elem: Numbers> + LieAlgebra<Scalar: Into<f64>> {
@@ -334,6 +334,25 @@ where
         // One of the last two may vanish where the solution is even or odd.
         let error = Real::lit(last.max(before.powf(n / (n - 1.0))));
         let length = step.h.abs() * group.norm(&w.f[0]);
-        Ok(ratio_of_relative(tolerance, error, from, length))
+        let relative = ratio_of_relative(tolerance, error, from, length);
+        if tolerance.rule() == Rule::PerLength {
+            return Ok(relative);
+        }
+        // Where the last terms move a part by the size of another one, the points without them tell.
+        let mut ratio = relative;
+        for (k, weight) in [(self.order, 1.0), (self.order - 1, before.powf(1.0 / (n - 1.0)))] {
+            let [without, minus] = &mut w.scratch;
+            for x in [&mut *without, &mut *minus] {
+                group.clear(x);
+            }
+            group.add(&w.g, without);
+            group.add(&w.psi[k], minus);
+            group.scale(ScalarOf::<P>::lit(-1.0), minus);
+            group.add(minus, without);
+            problem.action().act(group, without, from, &mut w.y, &mut w.act);
+            let gap = to.error_ratio(Gap::to(&w.y), &mut tolerance.scales());
+            ratio = larger(ratio, ScalarOf::<P>::lit(weight) * gap);
+        }
+        Ok(ratio)
     }
 }
