@@ -6,7 +6,7 @@
 //! | part | error | compared with |
 //! |---|---|---|
 //! | of a linear space: a vector, a momentum | ‖error‖ | atol + rtol·‖y‖, in 𝔤; atol + rtol·min(‖y‖, 10 ‖y − y₀‖), in M |
-//! | the same, with an atol for each component | \|error_i\| | atol_i + rtol·\|y_i\| |
+//! | the same, with an atol for each component | \|error_i\|; in 𝔤 that of the whole part | atol_i + rtol·\|y_i\| |
 //! | of a group: a rotation, a quaternion, a matrix | the angle, in radian (‖e‖ in 𝔤) | atol + rtol |
 //! | any, by [`Rule::PerLength`] | ‖error‖ of all parts together | atol + rtol·(the length of the step) |
 //!

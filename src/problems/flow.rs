@@ -319,7 +319,8 @@ impl<G: LieGroup, A: Action<G>, F, L, H, I> With<G, A, F, L, H, I> {
         Flow { group, action, field, facts: FlowFacts { linear: TimeAlone, energy, invariants } }
     }
 
-    /// Adds the Hamiltonian of f(m) = −∇H(m) under the coadjoint action.
+    /// Adds the Hamiltonian of f(m) = −∇H(m) under the coadjoint action. f must not depend on t: methods that conserve H take
+    /// f at t = 0.
     ///
     /// H becomes the invariant `energy`. Methods that conserve it take the mean of −f between two points as discrete
     /// gradient.

@@ -97,7 +97,8 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
     }
 
     /// Takes steps until the time is exactly t. The last step is shortened to end there. f is never evaluated after t, so
-    /// the state or f may be changed there. The limit of attempts ([`Solve::max_steps`]) is that of this call.
+    /// the state or f may be changed there. The limit of attempts
+    /// ([`Solve::max_steps`](super::Solve::max_steps)) is that of this call.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] for a t before the current time or after the end of the span; else as [`step`](Self::step).

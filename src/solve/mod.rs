@@ -347,13 +347,19 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
         Integrator::new(held, self.settings.t_span, pace, y0)
     }
 
-    /// Starts a run from y₀ that you take step by step. It has stops, but no output, events or cancellation.
+    /// Starts a run from y₀, or from the bytes of [`resume`](Self::resume), that you take step by step. It has stops, but no
+    /// output, events or cancellation.
     ///
     /// # Errors
     /// [`RunError::Setup`] for wrong arguments.
     pub fn integrator(mut self, y0: PointOf<P>) -> Result<Integrator<'a, P, M>, RunError> {
+        let resume = self.settings.resume.take();
         let mut run = self.start(y0)?;
         run.stops = core::mem::take(&mut self.settings.ends);
+        if let Some(bytes) = resume {
+            run.points.list = self.list;
+            run.times.restore(&mut run.points, &bytes)?;
+        }
         Ok(run)
     }
 

@@ -214,7 +214,11 @@ impl Timeline {
         write(&owner, &mut |each| self.each_word(points, each))
     }
 
-    fn restore(&mut self, points: &mut dyn AnyPoints, bytes: &[u8]) -> Result<(), Error> {
+    pub(super) fn restore(
+        &mut self,
+        points: &mut dyn AnyPoints,
+        bytes: &[u8],
+    ) -> Result<(), Error> {
         let owner = self.owner(points);
         read(&owner, bytes, &mut |each| self.each_word(points, each))?;
         self.forget_workspace();

@@ -297,3 +297,20 @@ fn a_start_with_few_digits_is_corrected_at_once() {
     let run = Solve::new(&flow, &method, [0.0, 5.0]).tolerances(1e-12, 1e-12).count(1);
     assert_eq!(run.run(fine).expect("a run").points[0], fine);
 }
+
+/// A run by hand goes on from bytes, too, and refuses those of another run.
+#[test]
+fn a_run_by_hand_goes_on_from_bytes() {
+    let f = |_: f64, _: &Matrix3<f64>, v: &mut Vector3<f64>| *v = Vector3::new(0.0, 0.0, 0.1);
+    let flow = Flow::new(So3::new(), LeftTranslation, f);
+    let method = Rkmk::new(RK4, Exp);
+    let solve = || Solve::new(&flow, &method, [0.0, 10.0]).dt(0.1);
+    let mut first = solve().integrator(Matrix3::identity()).expect("a start");
+    first.advance_to(3.0).expect("steps");
+    let mut second = solve().resume(first.save()).integrator(Matrix3::identity()).expect("a state");
+    assert_eq!((second.t(), second.y()), (3.0, first.y()));
+    first.advance_to(7.0).expect("steps");
+    second.advance_to(7.0).expect("steps");
+    assert_eq!(second.y(), first.y());
+    assert!(solve().resume(vec![1, 2, 3]).integrator(Matrix3::identity()).is_err());
+}
