@@ -13,7 +13,7 @@ use crate::maps::CoordinateMap;
 use crate::maps::PsiOf;
 use crate::scalar::{Ops, tally};
 use crate::space::Metric;
-use crate::tolerance::{Scales, Tolerance};
+use crate::tolerance::Scales;
 
 /// Λ(g, P) = (C + DP)(A + BP)⁻¹ on symmetric m×m matrices.
 ///
@@ -140,9 +140,13 @@ impl Action<MatrixGroup> for Lagrangian {
         group: &MatrixGroup,
         e: &AlgebraMatrix,
         ends: [&Mat<f64>; 2],
-        tolerance: &Tolerance,
+        scales: &mut Scales<'_>,
     ) -> f64 {
-        let [at_y, at_z] = ends.map(|p| self.error_ratio(group, e, p, &mut tolerance.scales()));
+        let start = scales.clone();
+        let [at_y, at_z] = ends.map(|p| {
+            *scales = start.clone();
+            self.error_ratio(group, e, p, scales)
+        });
         at_y.min(at_z)
     }
     fn lambda<Psi: CoordinateMap<MatrixGroup>>(

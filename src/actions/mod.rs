@@ -30,7 +30,7 @@ use crate::maps::CoordinateMap;
 use crate::maps::PsiOf;
 use crate::scalar::Real;
 use crate::space::{Gap, Metric};
-use crate::tolerance::{Scales, Tolerance};
+use crate::tolerance::Scales;
 
 /// A left action Λ of G on M: Λ(𝟙, p) = p and Λ(ab, p) = Λ(a, Λ(b, p)).
 pub trait Action<G: LieGroup>: Send + Sync {
@@ -115,13 +115,15 @@ pub trait Action<G: LieGroup>: Send + Sync {
         group: &G,
         e: &G::Alg,
         [y, z]: [&Self::Point; 2],
-        tolerance: &Tolerance,
+        scales: &mut Scales<'_>,
     ) -> G::Scalar {
-        let ratio = self.error_ratio(group, e, y, &mut tolerance.scales());
-        match ratio.is_finite() {
-            true => ratio,
-            false => self.error_ratio(group, e, z, &mut tolerance.scales()),
+        let start = scales.clone();
+        let ratio = self.error_ratio(group, e, y, scales);
+        if ratio.is_finite() {
+            return ratio;
         }
+        *scales = start;
+        self.error_ratio(group, e, z, scales)
     }
 
     /// q ← λ_p(u) = Λ(Ψ(u), p), equation (6).

@@ -101,6 +101,17 @@ where
         let first = self.0.error_ratio(&group.0, &e.0, &y.0, scales);
         larger(first, self.1.error_ratio(&group.1, &e.1, &y.1, scales))
     }
+    #[inline]
+    fn error_ratio_of_step(
+        &self,
+        group: &Product<A, B>,
+        e: &(A::Alg, B::Alg),
+        [y, z]: [&Self::Point; 2],
+        scales: &mut Scales<'_>,
+    ) -> A::Scalar {
+        let first = self.0.error_ratio_of_step(&group.0, &e.0, [&y.0, &z.0], scales);
+        larger(first, self.1.error_ratio_of_step(&group.1, &e.1, [&y.1, &z.1], scales))
+    }
     fn restore_to(
         &self,
         group: &Product<A, B>,
@@ -174,6 +185,17 @@ impl<G: LieGroup, L: Action<G>> Action<Power<G>> for Each<L> {
     ) -> G::Scalar {
         scales.for_each_copy(group.copies(), |i, scales| {
             self.0.error_ratio(group.group(), &e[i], &y[i], scales)
+        })
+    }
+    fn error_ratio_of_step(
+        &self,
+        group: &Power<G>,
+        e: &Box<[G::Alg]>,
+        [y, z]: [&Self::Point; 2],
+        scales: &mut Scales<'_>,
+    ) -> G::Scalar {
+        scales.for_each_copy(group.copies(), |i, scales| {
+            self.0.error_ratio_of_step(group.group(), &e[i], [&y[i], &z[i]], scales)
         })
     }
     fn restore_to(

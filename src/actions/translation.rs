@@ -19,12 +19,28 @@ macro_rules! on_the_group {
         fn assign(&self, group: &G, p: &G::Elem, q: &mut G::Elem) {
             group.assign(p, q);
         }
+        #[inline]
+        fn error_ratio(
+            &self,
+            group: &G,
+            e: &G::Alg,
+            g: &G::Elem,
+            scales: &mut Scales<'_>,
+        ) -> G::Scalar {
+            group.error_ratio(e, g, self.is_right(), scales)
+        }
     };
 }
 
 /// G acting on itself from the left: ġ = f(g)·g, equation (12).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LeftTranslation;
+
+impl LeftTranslation {
+    fn is_right(self) -> bool {
+        false
+    }
+}
 
 impl<G: LieGroup> Action<G> for LeftTranslation {
     type Point = G::Elem;
@@ -35,16 +51,6 @@ impl<G: LieGroup> Action<G> for LeftTranslation {
         [group.identity(), group.identity()]
     }
     on_the_group!();
-    #[inline]
-    fn error_ratio(
-        &self,
-        group: &G,
-        e: &G::Alg,
-        g: &G::Elem,
-        scales: &mut Scales<'_>,
-    ) -> G::Scalar {
-        group.error_ratio(e, g, scales)
-    }
     #[inline]
     fn act(&self, group: &G, g: &G::Elem, p: &G::Elem, q: &mut G::Elem, _: &mut Self::Work) {
         group.compose(g, p, q);
@@ -75,6 +81,12 @@ pub struct RightWork<G: Adjoint> {
     restore: [G::Elem; 2],
 }
 
+impl RightTranslation {
+    fn is_right(self) -> bool {
+        true
+    }
+}
+
 impl<G: Adjoint> Action<G> for RightTranslation {
     type Point = G::Elem;
     type Work = RightWork<G>;
@@ -85,16 +97,6 @@ impl<G: Adjoint> Action<G> for RightTranslation {
         RightWork { inverse: one(), inverting, minus, restore: [one(), one()] }
     }
     on_the_group!();
-    #[inline]
-    fn error_ratio(
-        &self,
-        group: &G,
-        e: &G::Alg,
-        g: &G::Elem,
-        scales: &mut Scales<'_>,
-    ) -> G::Scalar {
-        group.error_ratio_in_body(e, g, scales)
-    }
     #[inline]
     fn act(&self, group: &G, g: &G::Elem, p: &G::Elem, q: &mut G::Elem, work: &mut RightWork<G>) {
         // A singular g is not in G; its numbers are not finite, and the step ends with that.
@@ -129,6 +131,12 @@ pub enum Translation {
     Right,
 }
 
+impl Translation {
+    fn is_right(self) -> bool {
+        matches!(self, Translation::Right)
+    }
+}
+
 impl<G: Adjoint> Action<G> for Translation {
     type Point = G::Elem;
     type Work = RightWork<G>;
@@ -137,19 +145,6 @@ impl<G: Adjoint> Action<G> for Translation {
         RightTranslation.work(group)
     }
     on_the_group!();
-    #[inline]
-    fn error_ratio(
-        &self,
-        group: &G,
-        e: &G::Alg,
-        g: &G::Elem,
-        scales: &mut Scales<'_>,
-    ) -> G::Scalar {
-        match self {
-            Translation::Left => group.error_ratio(e, g, scales),
-            Translation::Right => group.error_ratio_in_body(e, g, scales),
-        }
-    }
     #[inline]
     fn act(&self, group: &G, g: &G::Elem, p: &G::Elem, q: &mut G::Elem, work: &mut RightWork<G>) {
         match self {

@@ -123,21 +123,18 @@ pub trait LieGroup: LieAlgebra {
     fn tangent(&self, v: &Self::Alg, g: &Self::Elem, out: &mut Self::Elem);
     /// y ← v·x = d/dε Ψ(εv)·x at ε = 0.
     fn apply_algebra(&self, v: &Self::Alg, x: &Self::Vector, y: &mut Self::Vector);
-    /// An error e ∈ 𝔤 at g in units of the tolerance: ‖e‖/(atol + rtol), because e is an angle. The error of a part
-    /// that is a linear space is relative to its size. A product returns the largest ratio of its parts.
+    /// An error e ∈ 𝔤 at g, which acts from the left or from the right, in units of the tolerance: ‖e‖/(atol + rtol), because
+    /// e is an angle. The error of a part that is a linear space is that of the place to which exp(e) moves it. A product
+    /// returns the largest ratio of its parts.
     #[inline]
-    fn error_ratio(&self, e: &Self::Alg, _g: &Self::Elem, scales: &mut Scales<'_>) -> Self::Scalar {
-        scales.part().ratio(self.norm(e), Self::Scalar::lit(1.0))
-    }
-    /// The same of an error e ∈ 𝔤 that acts from the right, g·exp(e).
-    #[inline]
-    fn error_ratio_in_body(
+    fn error_ratio(
         &self,
         e: &Self::Alg,
-        g: &Self::Elem,
+        _g: &Self::Elem,
+        _from_right: bool,
         scales: &mut Scales<'_>,
     ) -> Self::Scalar {
-        self.error_ratio(e, g, scales)
+        scales.part().ratio(self.norm(e), Self::Scalar::lit(1.0))
     }
     /// An error e ∈ 𝔤 at a vector in units of the tolerance: ‖e‖‖x‖/(atol + rtol·‖x‖).
     #[inline]

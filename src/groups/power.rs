@@ -159,19 +159,16 @@ impl<G: LieGroup> LieGroup for Power<G> {
             self.group.apply_algebra(v, x, y);
         }
     }
-    fn error_ratio(&self, e: &Self::Alg, g: &Self::Elem, scales: &mut Scales<'_>) -> G::Scalar {
-        scales.for_each_copy(self.copies, |i, scales| self.group.error_ratio(&e[i], &g[i], scales))
-    }
-    fn error_ratio_in_body(
+    fn error_ratio(
         &self,
         e: &Self::Alg,
         g: &Self::Elem,
+        from_right: bool,
         scales: &mut Scales<'_>,
     ) -> G::Scalar {
-        let each = |i: usize, scales: &mut Scales<'_>| {
-            self.group.error_ratio_in_body(&e[i], &g[i], scales)
-        };
-        scales.for_each_copy(self.copies, each)
+        scales.for_each_copy(self.copies, |i, scales| {
+            self.group.error_ratio(&e[i], &g[i], from_right, scales)
+        })
     }
     fn vector_error_ratio(
         &self,

@@ -124,19 +124,15 @@ impl<A: LieGroup, B: LieGroup<Scalar = A::Scalar>> LieGroup for Product<A, B> {
         self.1.apply_algebra(&v.1, &x.1, &mut y.1);
     }
     #[inline]
-    fn error_ratio(&self, e: &Self::Alg, g: &Self::Elem, scales: &mut Scales<'_>) -> A::Scalar {
-        let first = self.0.error_ratio(&e.0, &g.0, scales);
-        larger(first, self.1.error_ratio(&e.1, &g.1, scales))
-    }
-    #[inline]
-    fn error_ratio_in_body(
+    fn error_ratio(
         &self,
         e: &Self::Alg,
         g: &Self::Elem,
+        from_right: bool,
         scales: &mut Scales<'_>,
     ) -> A::Scalar {
-        let first = self.0.error_ratio_in_body(&e.0, &g.0, scales);
-        larger(first, self.1.error_ratio_in_body(&e.1, &g.1, scales))
+        let first = self.0.error_ratio(&e.0, &g.0, from_right, scales);
+        larger(first, self.1.error_ratio(&e.1, &g.1, from_right, scales))
     }
     #[inline]
     fn vector_error_ratio(

@@ -160,18 +160,18 @@ impl<S: Real> LieGroup for Se23<S> {
     }
     /// Three parts: the rotation, the velocity and the place.
     #[inline]
-    fn error_ratio(&self, e: &Three<S>, g: &Self::Elem, scales: &mut Scales<'_>) -> S {
+    fn error_ratio(
+        &self,
+        e: &Three<S>,
+        g: &Self::Elem,
+        from_right: bool,
+        scales: &mut Scales<'_>,
+    ) -> S {
         let turned = scales.part().ratio(e.0.size(), S::lit(1.0));
-        let [first, second] = [(e.1.0, g.1.0), (e.1.1, g.1.1)]
-            .map(|(a, x)| x.error_ratio(Gap::of(&(a + cross(&e.0, &x))), scales));
-        larger(turned, larger(first, second))
-    }
-    /// g·exp(e): the sizes of the velocity and the place do not matter.
-    #[inline]
-    fn error_ratio_in_body(&self, e: &Three<S>, g: &Self::Elem, scales: &mut Scales<'_>) -> S {
-        let turned = scales.part().ratio(e.0.size(), S::lit(1.0));
-        let [first, second] = [(e.1.0, g.1.0), (e.1.1, g.1.1)]
-            .map(|(a, x)| x.error_ratio(Gap::of(&apply3(&g.0, &a)), scales));
+        let [first, second] = [(e.1.0, g.1.0), (e.1.1, g.1.1)].map(|(a, x)| {
+            let moved = if from_right { apply3(&g.0, &a) } else { a + cross(&e.0, &x) };
+            x.error_ratio(Gap::of(&moved), scales)
+        });
         larger(turned, larger(first, second))
     }
     #[inline]

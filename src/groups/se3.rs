@@ -145,17 +145,17 @@ impl<S: Real> LieGroup for Se3<S> {
     }
     /// Two parts: the rotation and the translation.
     #[inline]
-    fn error_ratio(&self, e: &Self::Alg, g: &Self::Elem, scales: &mut Scales<'_>) -> S {
+    fn error_ratio(
+        &self,
+        e: &Self::Alg,
+        g: &Self::Elem,
+        from_right: bool,
+        scales: &mut Scales<'_>,
+    ) -> S {
         let turned = scales.part().ratio(e.0.size(), S::lit(1.0));
-        // d/dε of exp(εe) g moves the place p by ω × p + v.
-        let moved = e.1 + cross(&e.0, &g.1);
+        // exp(εe) g moves the place p by ω × p + v, and g exp(εe) by Rv.
+        let moved = if from_right { apply3(&g.0, &e.1) } else { e.1 + cross(&e.0, &g.1) };
         larger(turned, g.1.error_ratio(Gap::of(&moved), scales))
-    }
-    /// g·exp(e) is at the place p + Rv: the size of p does not matter.
-    #[inline]
-    fn error_ratio_in_body(&self, e: &Self::Alg, g: &Self::Elem, scales: &mut Scales<'_>) -> S {
-        let turned = scales.part().ratio(e.0.size(), S::lit(1.0));
-        larger(turned, g.1.error_ratio(Gap::of(&apply3(&g.0, &e.1)), scales))
     }
     #[inline]
     fn vector_error_ratio(&self, e: &Self::Alg, x: &Vector3<S>, scales: &mut Scales<'_>) -> S {

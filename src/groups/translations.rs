@@ -112,7 +112,7 @@ impl<V: LinearSpace> LieGroup for Translations<V> {
         self.check_elem(x)
     }
     #[inline]
-    fn error_ratio(&self, e: &V, g: &V, scales: &mut Scales<'_>) -> V::Scalar {
+    fn error_ratio(&self, e: &V, g: &V, _: bool, scales: &mut Scales<'_>) -> V::Scalar {
         g.error_ratio(Gap::of(e), scales)
     }
     #[inline]

@@ -61,7 +61,9 @@ pub(crate) fn ratio_in_algebra<P: Problem>(
     let group = problem.group();
     match tolerance.rule() {
         Rule::PerLength => ratio(group.norm(e), tolerance.per_length(length)),
-        Rule::PerStep => problem.action().error_ratio_of_step(group, e, [y, z], tolerance),
+        Rule::PerStep => {
+            problem.action().error_ratio_of_step(group, e, [y, z], &mut tolerance.scales())
+        }
     }
 }
 

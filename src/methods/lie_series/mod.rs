@@ -341,14 +341,11 @@ where
         // Where the last terms move a part by the size of another one, the points without them tell.
         let mut ratio = relative;
         for (k, weight) in [(self.order, 1.0), (self.order - 1, before.powf(1.0 / (n - 1.0)))] {
-            let [without, minus] = &mut w.scratch;
-            for x in [&mut *without, &mut *minus] {
-                group.clear(x);
-            }
+            let [without, _] = &mut w.scratch;
+            group.clear(without);
+            group.add(&w.psi[k], without);
+            group.scale(ScalarOf::<P>::lit(-1.0), without);
             group.add(&w.g, without);
-            group.add(&w.psi[k], minus);
-            group.scale(ScalarOf::<P>::lit(-1.0), minus);
-            group.add(minus, without);
             problem.action().act(group, without, from, &mut w.y, &mut w.act);
             let gap = to.error_ratio(Gap::to(&w.y), &mut tolerance.scales());
             ratio = larger(ratio, ScalarOf::<P>::lit(weight) * gap);
