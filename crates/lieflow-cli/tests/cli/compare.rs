@@ -508,9 +508,12 @@ every = 100
     let scene = Scene::parse("scene", text).unwrap();
     let t_span = scene.grid.t_span();
     let many = [188, 375, 750, 1500, 3000];
-    let [low, high] = [&[][..], &many]
-        .map(|steps| judge_of(&scene, &["attitude"], t_span, steps).reference.floor());
-    assert!(high > 2.0 * low, "{low:e} {high:e}");
+    let floors = |quantity: &str| {
+        [&[][..], &many].map(|steps| judge_of(&scene, &[quantity], t_span, steps).reference.floor())
+    };
+    let [low, high] = floors("momentum_body");
+    assert!(high > 3.0 * low, "{low:e} {high:e}");
+    let [low, high] = floors("attitude");
     // Where smaller steps no longer help a method of high order, its error is no larger.
     let judge = judge_of(&scene, &["attitude"], t_span, &many);
     let model = scene.model_with(Layer::Closed, &judge.quantities()).unwrap();
