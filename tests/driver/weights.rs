@@ -3,7 +3,9 @@
 
 use lieflow::actions::{Coadjoint, Lagrangian, Linear, Pair};
 use lieflow::faer::{c64, mat};
-use lieflow::groups::{ComplexMatrix, LieAlgebra, MatrixGroup, Product, Se3, So3, Unitary};
+use lieflow::groups::{
+    AlgebraMatrix, ComplexMatrix, LieAlgebra, MatrixGroup, Product, Se3, So3, Unitary,
+};
 use lieflow::maps::Exp;
 use lieflow::methods::tableau::{DOP853, DOPRI5, RK4};
 use lieflow::methods::{Embedded, LieSeries, Rk, Rkmk};
@@ -178,4 +180,23 @@ fn states_of_unitary_groups_are_finite() {
     let plain = Rkmk::new(RK4, Exp);
     let empty = Solve::new(&one, &plain, [0.0, 0.0]).steps(1);
     refused(empty.run(psi).map(drop).map_err(|failed| failed.error));
+}
+
+/// A Riccati equation beside a vector passes its poles as alone, and has its own error beside a large P.
+#[test]
+fn a_riccati_equation_in_a_pair() {
+    let group = Product(MatrixGroup::sp(2).expect("a group"), So3::<f64>::new());
+    let f = |_: f64, _: &_, v: &mut (AlgebraMatrix, Vector3<f64>)| {
+        (v.0[(1, 0)], v.0[(0, 1)]) = (1.0, -1.0);
+        v.1 = Vector3::z();
+    };
+    let flow = Flow::new(group, Pair(Lagrangian, Linear), f);
+    let method = Rkmk::new(DOP853, Exp);
+    let pi_2 = core::f64::consts::FRAC_PI_2;
+    for stop in [pi_2, pi_2 - 1e-7] {
+        let solve = Solve::new(&flow, &method, [0.0, 3.0]).tolerances(1e-13, 1e-13).stops([stop]);
+        let end = solve.run((mat![[0.0]], Vector3::x())).expect("a run over a pole").y;
+        assert!((end.0[(0, 0)] - 3f64.tan()).abs() < 1e-9, "{stop}: {:?}", end.0);
+        assert!((end.1 - Vector3::new(3f64.cos(), 3f64.sin(), 0.0)).norm() < 1e-10, "{}", end.1);
+    }
 }
