@@ -13,7 +13,7 @@ struct Crate {
     rooms: Vec<&'static str>,
 }
 
-fn crates() -> [Crate; 5] {
+fn crates() -> [Crate; 6] {
     macro_rules! of {
         ($src:literal) => {
             ($src, include_str!(concat!("../../", $src, "/lib.rs")))
@@ -21,6 +21,7 @@ fn crates() -> [Crate; 5] {
     }
     let all = [
         of!("src"),
+        of!("crates/lieflow-runs/src"),
         of!("crates/lieflow-model/src"),
         of!("crates/lieflow-figures/src"),
         of!("crates/lieflow-paper/src"),

@@ -12,10 +12,10 @@ use lieflow::maps::MAPS;
 use lieflow::problems::Origin;
 use lieflow::solve::Next;
 use lieflow::{SaveAt, StepControl, TimeGrid};
+use lieflow_runs::schema::{Observable, Row};
 
 use crate::problem::{EventPlan, Layer, Model, Plan, Steps, Watcher};
 use crate::scene::{Scene, SceneError};
-use crate::schema::{Observable, Row};
 
 /// A bundled scene that is checked: its name, its layer, what is changed, and the span.
 struct Case {

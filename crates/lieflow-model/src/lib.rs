@@ -5,7 +5,6 @@
 //!
 //! | room | what is in it |
 //! |---|---|
-//! | `schema` | the rows of a run: quantities, their columns, their laws |
 //! | `reader` | values with their places, and what is wrong with them |
 //! | `formula` | texts that become functions |
 //! | `problem` | what is the same for every kind of problem |
@@ -13,7 +12,8 @@
 //! | `scene` | a problem, a method, times and output, as a TOML file |
 //! | `check` | checks that hold for every scene |
 //!
-//! A room uses those above it in this table only.
+//! A room uses those above it in this table only. Below them all is `lieflow-runs`: [`schema`], the rows of a run, and runs of
+//! each type of problem.
 #![forbid(unsafe_code)]
 
 pub mod check;
@@ -22,4 +22,5 @@ pub mod kinds;
 pub mod problem;
 pub mod reader;
 pub mod scene;
-pub mod schema;
+
+pub use lieflow_runs::schema;

@@ -7,5 +7,3 @@
 mod formula;
 #[path = "../src/reader/mod.rs"]
 mod reader;
-#[path = "../src/schema/mod.rs"]
-mod schema;

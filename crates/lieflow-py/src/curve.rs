@@ -2,8 +2,6 @@
 
 use std::sync::Arc;
 
-use lieflow::RunError;
-use lieflow_model::kinds::own;
 use lieflow_model::problem::RowCurve;
 use numpy::{PyArray1, PyArrayDyn, PyArrayMethods};
 use pyo3::prelude::*;
@@ -11,47 +9,16 @@ use pyo3::prelude::*;
 use crate::arrays::{Input, output};
 use crate::error::argument;
 
-/// The points of a run of a field, or the rows of one of a model.
-enum Kept {
-    Points(Box<dyn own::Curve>),
-    Rows(Box<dyn RowCurve>),
-}
-
-/// The points of a run at all times, as numbers.
+/// The points of a run of a field at all times, or the rows of one of a model, as numbers.
 #[pyclass(frozen, module = "lieflow._lieflow")]
 pub(crate) struct Curve {
-    kept: Arc<Kept>,
+    kept: Arc<dyn RowCurve>,
     shape: Vec<usize>,
 }
 
-impl Kept {
-    fn t_span(&self) -> [f64; 2] {
-        match self {
-            Kept::Points(curve) => curve.t_span(),
-            Kept::Rows(curve) => curve.t_span(),
-        }
-    }
-
-    fn at(&self, times: &[f64], out: &mut [f64]) -> Result<(), (usize, RunError)> {
-        match self {
-            Kept::Points(curve) => curve.at(times, out),
-            Kept::Rows(curve) => {
-                let mut values = Vec::with_capacity(out.len());
-                curve.rows(times, &mut values)?;
-                out.copy_from_slice(&values);
-                Ok(())
-            }
-        }
-    }
-}
-
 impl Curve {
-    pub(crate) fn new(curve: Box<dyn own::Curve>, shape: &[usize]) -> Self {
-        Curve { kept: Arc::new(Kept::Points(curve)), shape: shape.to_vec() }
-    }
-
-    pub(crate) fn of_rows(curve: Box<dyn RowCurve>, width: usize) -> Self {
-        Curve { kept: Arc::new(Kept::Rows(curve)), shape: vec![width] }
+    pub(crate) fn new(curve: Box<dyn RowCurve>, shape: &[usize]) -> Self {
+        Curve { kept: curve.into(), shape: shape.to_vec() }
     }
 }
 
@@ -66,10 +33,13 @@ impl Curve {
         // SAFETY: the array is new.
         let numbers = unsafe { out.as_slice_mut()? };
         let times = t.numbers();
-        let done = match times.len() < 64 {
-            true => self.kept.at(times, numbers),
-            false => py.detach(|| self.kept.at(times, numbers)),
+        let mut fill = || {
+            let mut values = Vec::with_capacity(numbers.len());
+            self.kept.rows(times, &mut values)?;
+            numbers.copy_from_slice(&values);
+            Ok(())
         };
+        let done = if times.len() < 64 { fill() } else { py.detach(fill) };
         done.map_err(|(index, error)| {
             let [start, end] = self.kept.t_span();
             match start.min(end) <= times[index] && times[index] <= start.max(end) {
@@ -89,19 +59,10 @@ impl Curve {
     }
     #[getter]
     fn steps(&self) -> usize {
-        match &*self.kept {
-            Kept::Points(curve) => curve.steps(),
-            Kept::Rows(curve) => curve.steps(),
-        }
+        self.kept.steps()
     }
     /// All its numbers, to store it.
     fn numbers<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_vec(
-            py,
-            match &*self.kept {
-                Kept::Points(curve) => curve.numbers(),
-                Kept::Rows(curve) => curve.numbers(),
-            },
-        )
+        PyArray1::from_vec(py, self.kept.numbers())
     }
 }

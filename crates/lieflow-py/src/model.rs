@@ -4,13 +4,12 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use lieflow::catalog::{MethodSpec, all_methods};
-use lieflow::solve::Next;
 use lieflow::{RunError, SaveAt, TimeGrid};
 use lieflow_model::formula::Which;
 use lieflow_model::kinds::{KINDS, named};
 use lieflow_model::problem::{
     self, CurvePlace, EventPlan, Kept, KeyInfo, Layer, Orders, Outcome, Plan, StepByStep, Steps,
-    Stops, Watcher,
+    Stops,
 };
 use lieflow_model::reader::{ReadError, Shape, Tree};
 use lieflow_model::scene::{Columns, OnRows, RowFormula};
@@ -21,9 +20,9 @@ use pyo3::types::PyDict;
 
 use crate::curve::Curve;
 use crate::error::{argument, refused};
-use crate::field::{self, Callable, Raised};
+use crate::field::{self, Raised};
 use crate::run::{
-    EventParts, Fitting, Function, LONGEST, SIGNALS, Seen, Settings, Watch, Watched, save_of,
+    EventParts, Fitting, Function, LONGEST, SIGNALS, Settings, Watch, Watched, Watching, save_of,
 };
 use crate::solve::knots;
 use crate::stepper::Stepper;
@@ -239,29 +238,6 @@ pub(crate) struct Model {
 /// A function of t and a row.
 type RowValue<'a> = Box<dyn Fn(f64, Row<'_>) -> f64 + 'a>;
 
-/// What watches a run of a model.
-pub(crate) struct OfModel<'a> {
-    pub(crate) callback: Option<&'a Callable>,
-    pub(crate) raised: &'a Raised,
-    pub(crate) seen: &'a mut Seen,
-}
-
-impl Watcher for OfModel<'_> {
-    fn row(&mut self, t: f64, row: Row<'_>) -> Next {
-        self.seen.row(self.callback, self.raised, t, row.values());
-        Next::Continue
-    }
-    fn event(&mut self, event: usize, t: f64, _: bool, row: Row<'_>) {
-        self.seen.found[event].push(t, row.values());
-    }
-    fn progress(&mut self, _: f64) {
-        self.seen.signals(self.raised);
-    }
-    fn end(&mut self, t: f64, stats: &lieflow::Stats) {
-        self.seen.end = Some((t, *stats));
-    }
-}
-
 impl Model {
     /// The row at the start of a run from t0, if it has one: it has the signs that the keys say.
     fn start_row(&self, method: &MethodSpec, t0: f64) -> Option<Vec<f64>> {
@@ -324,9 +300,9 @@ impl Model {
             start,
             ..Plan::new(steps, save)
         };
-        let mut watcher = OfModel { callback, raised, seen };
+        let mut watcher = Watching { callback, raised, seen };
         let done = self.model.drive(spec, plan, &mut watcher);
-        let curve = curve.map(|curve| Curve::of_rows(curve, self.width()));
+        let curve = curve.map(|curve| Curve::new(curve, &[self.width()]));
         (done, curve)
     }
 }
@@ -475,7 +451,7 @@ impl Model {
     ) -> PyResult<Curve> {
         let curve = self.model.curve(&self.method(py, method)?.0, numbers.as_slice()?);
         let curve = curve.map_err(|error| refused(py, "curve", &error))?;
-        Ok(Curve::of_rows(curve, self.width()))
+        Ok(Curve::new(curve, &[self.width()]))
     }
     /// A run that is taken step by step.
     fn stepper(

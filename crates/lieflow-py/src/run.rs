@@ -5,11 +5,12 @@ use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use lieflow::catalog::MethodSpec;
-use lieflow::solve::Status;
+use lieflow::solve::{Next, Status};
 use lieflow::{Direction, RunError, SaveAt, Stats, StepControl, TimeGrid};
 use lieflow_model::kinds::own::OwnField;
-use lieflow_model::problem::{Orders, Steps, Stops, stop_after_hardest};
+use lieflow_model::problem::{Orders, Steps, Stops, Watcher, stop_after_hardest};
 use lieflow_model::scene::{beside_fixed_steps, default_tolerances};
+use lieflow_model::schema::Row;
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -241,7 +242,7 @@ pub(crate) struct Seen {
     pub(crate) found: Vec<Rows>,
     ended_by_callback: bool,
     /// The time and the numbers at the end, and what the run did.
-    pub(crate) end: Option<(f64, Stats)>,
+    end: Option<(f64, Vec<f64>, Stats)>,
     last: Option<Instant>,
 }
 
@@ -328,7 +329,7 @@ impl Seen {
         if let Some(error) = raised.take() {
             return Err(error);
         }
-        let Some((t_end, stats)) = self.end else {
+        let Some((t_end, y_end, stats)) = self.end else {
             let error =
                 status.err().map_or_else(|| argument(py, "fun", "", ""), |e| of_run(py, &e));
             return Err(error);
@@ -358,6 +359,7 @@ impl Seen {
         result.set_item("status", code)?;
         result.set_item("message", message)?;
         result.set_item("t_end", t_end)?;
+        result.set_item("y_end", field::array(py, shape, &y_end)?)?;
         result.set_item("nfev", stats.evaluations)?;
         result.set_item("nsteps", stats.accepted)?;
         result.set_item("nrejected", stats.rejected)?;
@@ -379,6 +381,29 @@ impl Seen {
         let ended_by = status.as_ref().ok().and_then(Status::event);
         result.set_item("unsure", stats.unsure_in_words(limit, ended_by))?;
         Ok(result)
+    }
+}
+
+/// Gives what a run shows to what was seen of it.
+pub(crate) struct Watching<'a> {
+    pub(crate) callback: Option<&'a Callable>,
+    pub(crate) raised: &'a Raised,
+    pub(crate) seen: &'a mut Seen,
+}
+
+impl Watcher for Watching<'_> {
+    fn row(&mut self, t: f64, row: Row<'_>) -> Next {
+        self.seen.row(self.callback, self.raised, t, row.values());
+        Next::Continue
+    }
+    fn event(&mut self, event: usize, t: f64, _: bool, row: Row<'_>) {
+        self.seen.found[event].push(t, row.values());
+    }
+    fn progress(&mut self, _: f64) {
+        self.seen.signals(self.raised);
+    }
+    fn end(&mut self, t: f64, row: Row<'_>, stats: &Stats) {
+        self.seen.end = Some((t, row.values().to_vec(), *stats));
     }
 }
 

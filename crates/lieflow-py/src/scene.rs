@@ -10,8 +10,8 @@ use pyo3::types::PyDict;
 
 use crate::error::{argument, refused};
 use crate::field::Raised;
-use crate::model::{OfModel, schema_of};
-use crate::run::{Rows, Seen};
+use crate::model::schema_of;
+use crate::run::{Rows, Seen, Watching};
 use crate::tree::untree;
 
 /// A scene.
@@ -83,7 +83,7 @@ impl Scene {
                 Ok(plan) => Plan { cancel: Some(&raised.stop), ..plan },
                 Err(error) => return (Err(error.into()), None),
             };
-            let mut watcher = OfModel { callback: None, raised: &raised, seen: &mut seen };
+            let mut watcher = Watching { callback: None, raised: &raised, seen: &mut seen };
             let done = model.drive(&self.0.method, plan, &mut watcher);
             let lost = done.as_ref().err().and_then(|error| self.0.lost_in_words(error));
             (done.map(|outcome| outcome.status), lost)

@@ -1,13 +1,13 @@
 //! Runs of a field of the user.
 
-use std::cell::RefCell;
 use std::sync::Arc;
 
 use lieflow::catalog::MethodSpec;
 use lieflow::samples::{Interpolation, Samples};
-use lieflow::{Error, SaveAt};
-use lieflow_model::kinds::own::{self, Frame, GroupName, Own, OwnEvent, OwnField, OwnPlan, Ran};
-use lieflow_model::problem::{Change, StepByStep, Steps};
+use lieflow::solve::Status;
+use lieflow::{Error, RunError, SaveAt};
+use lieflow_model::kinds::own::{self, Frame, GroupName, Own, OwnField};
+use lieflow_model::problem::{Change, CurvePlace, EventPlan, Plan, RowCurve, StepByStep, Steps};
 use numpy::{PyArrayDyn, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -17,7 +17,7 @@ use crate::curve::Curve;
 use crate::error::{argument, refused, words};
 use crate::field::{self, Callable, Raised};
 use crate::formulas::Formulas;
-use crate::run::{EventParts, Fitting, LONGEST, Settings, Watch, save_of, spec_of};
+use crate::run::{EventParts, Fitting, LONGEST, Settings, Watch, Watching, save_of, spec_of};
 use crate::stepper::Stepper;
 
 /// The space of a run: a group, an action, and the shapes of y and f.
@@ -279,49 +279,41 @@ pub(crate) fn solve<'py>(
     let save = save_of(t_eval)?;
     let attached = ready.attached || watch.has_callables();
     let mut run = || drive(&ready, &y0, (&settings, save.clone()), &mut watch);
-    let Ran { status, end, curve } = if attached { run() } else { py.detach(run) };
-    let y_end = end.as_ref().map(|end| end.y.clone());
-    watch.seen.end = end.map(|end| (end.t, end.stats));
+    let (status, curve) = if attached { run() } else { py.detach(run) };
     let result = watch.seen.into_dict(py, &raised, status, (shape, LONGEST), Some(&ready.steps))?;
-    result.set_item("y_end", y_end.map(|y| field::array(py, shape, &y)).transpose()?)?;
     let curve = curve.map(|curve| Py::new(py, Curve::new(curve, shape))).transpose()?;
     result.set_item("curve", curve)?;
     Ok(result)
 }
 
-/// Runs it.
+/// Runs it. Returns why it ended, and its points at all times, if they are kept.
 fn drive(
     ready: &Ready,
     y0: &[f64],
     (settings, save): (&Settings, SaveAt),
     watch: &mut Watch,
-) -> Ran {
+) -> (Result<Status, RunError>, Option<Box<dyn RowCurve>>) {
     let (events, callback, raised, seen) = watch.parts();
-    let seen = RefCell::new(seen);
-    let events = events.iter().enumerate().map(|(i, event)| {
-        let seen = &seen;
-        OwnEvent {
-            name: event.name.clone(),
-            value: Box::new(|t, y| event.value(t, y)),
-            direction: event.direction,
-            stop_after: event.stop_after,
-            change: event
-                .change
-                .is_some()
-                .then(|| -> Change<'_> { Box::new(|t, y| event.change(t, y)) }),
-            points: event.points,
-            tell: Box::new(move |t, y| seen.borrow_mut().found[i].push(t, y)),
-        }
+    let events = events.iter().map(|event| EventPlan {
+        direction: event.direction,
+        stop_after: event.stop_after,
+        points: event.points,
+        change: event
+            .change
+            .is_some()
+            .then(|| -> Change<'_> { Box::new(|t, y| event.change(t, y)) }),
+        ..EventPlan::new(event.name.clone(), Vec::new(), |t, row| event.value(t, row.values()))
     });
-    let plan = OwnPlan {
-        steps: ready.steps.clone(),
-        save,
+    let mut curve = None;
+    let plan = Plan {
         stops: settings.stops(),
         max_steps: settings.max_steps,
-        dense: settings.dense_output,
         events: events.collect(),
-        progress: Some(Box::new(|_| seen.borrow_mut().signals(raised))),
+        cancel: Some(&raised.stop),
+        curve: settings.dense_output.then_some(CurvePlace(&mut curve)),
+        ..Plan::new(ready.steps.clone(), save)
     };
-    let mut observe = |t: f64, y: &[f64]| seen.borrow_mut().row(callback, raised, t, y);
-    ready.problem.run(&ready.spec, y0, plan, &mut observe, &raised.stop)
+    let mut watcher = Watching { callback, raised, seen };
+    let done = ready.problem.run(&ready.spec, y0, plan, &mut watcher);
+    (done.map(|outcome| outcome.status), curve)
 }

@@ -8,10 +8,10 @@ use lieflow::dense::multiply;
 use lieflow::groups::{AlgebraMatrix, MatrixGroup};
 use lieflow::problems::Flow;
 use lieflow::problems::beam::{Element, transfer_map, tunes};
+use lieflow_runs::spaces::MatrixAction;
+use lieflow_runs::spaces::OnMatrices;
 
 use super::entries::{power, rows, symplectic_defect};
-use super::flow::OnMatrices;
-use super::matrix::MatrixAction;
 use super::prelude::*;
 use crate::problem::{KNOTS_MAX, Stops};
 

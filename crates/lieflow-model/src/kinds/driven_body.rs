@@ -17,10 +17,10 @@ use lieflow::actions::LeftTranslation;
 use lieflow::groups::{LieGroup, So3};
 use lieflow::problems::{BodyMotion, BodyTorque, Torque, TorqueBody};
 use lieflow::scalar::{Counted, Real, Trig};
+use lieflow_runs::spaces;
 use nalgebra::{Matrix3, Vector3};
 
 use super::body::*;
-use super::flow;
 use super::prelude::*;
 use crate::formula::{Formula, Names, Texts, without_value};
 use crate::problem::PointOf;
@@ -243,12 +243,12 @@ impl Driven {
 pub(super) fn on<S: Trig + Into<f64> + 'static>(
     body: &TorqueBody<Torques>,
     torques: &Torques,
-) -> flow::Driven<S> {
-    flow::Driven::new(body.on(torques.clone()), LeftTranslation)
+) -> spaces::Driven<S> {
+    spaces::Driven::new(body.on(torques.clone()), LeftTranslation)
 }
 
 impl System for Driven {
-    type Problem = flow::Driven;
+    type Problem = spaces::Driven;
 
     const STATE: &'static [&'static str] = &["attitude", "momentum_space"];
     const QUANTITIES: &'static [Q] = with_angles![
@@ -289,7 +289,7 @@ impl System for Driven {
     fn layer(&self) -> Layer {
         Layer::Closed
     }
-    fn problem(&self) -> Result<Start<flow::Driven>, Error> {
+    fn problem(&self) -> Result<Start<spaces::Driven>, Error> {
         Ok((on(&self.body, &self.torques), self.start))
     }
     fn counted(&self) -> Option<Counting> {

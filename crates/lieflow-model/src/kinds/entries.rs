@@ -3,10 +3,10 @@
 
 use lieflow::dense::{largest_entry, multiply, norm, squared_norm, symmetric_eigenvalues};
 use lieflow::groups::{GroupMatrix, LieGroup, MatrixGroup};
+use lieflow_runs::schema::{Law, Scale};
+use lieflow_runs::spaces::OnMatrices;
 
-use super::flow::OnMatrices;
 use super::prelude::*;
-use crate::schema::{Law, Scale};
 
 /// The asymmetry that the rounding of written entries explains, relative to the largest entry.
 pub(super) const ROUNDING: f64 = 64.0 * f64::EPSILON;

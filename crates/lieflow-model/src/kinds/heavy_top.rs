@@ -11,11 +11,11 @@ use core::marker::PhantomData;
 use lieflow::actions::Coadjoint;
 use lieflow::problems::{HeavyTop, TorqueBody};
 use lieflow::scalar::{Counted, Trig};
+use lieflow_runs::spaces::{Driven, OnSe3};
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
 use super::body::*;
 use super::driven_body::{self, Torques};
-use super::flow::{Driven, OnSe3};
 use super::prelude::*;
 use crate::problem::PointOf;
 use crate::problem::Runnable;

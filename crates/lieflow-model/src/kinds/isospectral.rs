@@ -3,12 +3,12 @@
 
 use lieflow::dense::norm;
 use lieflow::problems::{IsospectralFlow, toda_lattice};
+use lieflow_runs::spaces::MatrixAction;
+use lieflow_runs::spaces::OnMatrices;
 
 use super::entries::{
     ROUNDING, check_symmetric, diagonal, eigenvalues, numbered, symmetric, upper, upper_columns,
 };
-use super::flow::OnMatrices;
-use super::matrix::MatrixAction;
 use super::prelude::*;
 
 /// The entry of Toda's flow in the list of kinds.

@@ -7,9 +7,9 @@ use lieflow::actions::Coadjoint;
 use lieflow::groups::Se3;
 use lieflow::problems::{Euler, Kinetic};
 use lieflow::scalar::{Counted, Trig};
+use lieflow_runs::spaces::OnSe3;
 use nalgebra::Vector3;
 
-use super::flow::OnSe3;
 use super::prelude::*;
 use crate::problem::SERIES;
 

@@ -5,10 +5,10 @@ use lieflow::Problem;
 use lieflow::dense::{multiply, squared_norm};
 use lieflow::groups::{AlgebraMatrix, LieAlgebra, MatrixGroup};
 use lieflow::problems::{ChargedParticle, Flow, four_velocity, lorentz_transformation};
+use lieflow_runs::spaces::MatrixAction;
+use lieflow_runs::spaces::OnMatrices;
 use nalgebra::Vector3;
 
-use super::flow::OnMatrices;
-use super::matrix::MatrixAction;
 use super::prelude::*;
 
 /// The entry in the list of kinds.

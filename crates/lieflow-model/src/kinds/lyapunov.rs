@@ -6,9 +6,9 @@ use std::sync::Arc;
 use lieflow::actions::LeftTranslation;
 use lieflow::groups::{LieGroup, MatrixGroup};
 use lieflow::problems::Lyapunov;
+use lieflow_runs::spaces::Growing;
 
 use super::entries::{numbered, rows};
-use super::flow::Growing;
 use super::prelude::*;
 use crate::formula::{Formula, Names, Texts, without_value};
 

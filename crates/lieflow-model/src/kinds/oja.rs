@@ -3,10 +3,10 @@
 
 use lieflow::dense::{multiply, norm, qr};
 use lieflow::problems::Oja;
+use lieflow_runs::spaces::MatrixAction;
+use lieflow_runs::spaces::OnMatrices;
 
 use super::entries::{ROUNDING, check_rows, eigenvalues, rows, symmetric};
-use super::flow::OnMatrices;
-use super::matrix::MatrixAction;
 use super::prelude::*;
 
 /// The entry in the list of kinds.

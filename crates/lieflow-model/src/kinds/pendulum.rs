@@ -4,9 +4,9 @@
 use lieflow::actions::Coadjoint;
 use lieflow::problems::SphericalPendulum;
 use lieflow::scalar::Counted;
+use lieflow_runs::spaces::OnSe3;
 use nalgebra::Vector3;
 
-use super::flow::OnSe3;
 use super::prelude::*;
 use crate::problem::SERIES;
 

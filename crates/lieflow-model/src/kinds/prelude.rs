@@ -2,6 +2,7 @@
 
 pub(super) use faer::Mat;
 pub(super) use lieflow::Error;
+pub(super) use lieflow_runs::schema::{Dimension, Law, Numbers, Scale};
 
 pub(super) use crate::problem::{
     Counting, Figure, Forms, Kind, Layer, PrincipalInertia, Property, Quantity, Start, System,
@@ -12,4 +13,3 @@ pub(super) use crate::reader::{
     Either, Key, KeyPath, ReadError, Refusal, all, amount, at_most_one, exactly_one, given,
     help_for, read_by_keys, read_with, seen,
 };
-pub(super) use crate::schema::{Dimension, Law, Numbers, Scale};

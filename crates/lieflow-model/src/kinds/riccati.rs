@@ -5,15 +5,15 @@
 
 use lieflow::groups::{AlgebraMatrix, MatrixGroup};
 use lieflow::problems::Flow;
+use lieflow_runs::schema::Branch;
+use lieflow_runs::spaces::MatrixAction;
+use lieflow_runs::spaces::OnMatrices;
 
 use super::entries::{
     ROUNDING, check_symmetric, eigenvalues, numbered, square, symmetric, symmetric_part, upper,
     upper_columns,
 };
-use super::flow::OnMatrices;
-use super::matrix::MatrixAction;
 use super::prelude::*;
-use crate::schema::Branch;
 
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {

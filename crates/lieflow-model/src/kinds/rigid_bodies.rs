@@ -8,12 +8,12 @@ use lieflow::groups::{Power, So3};
 use lieflow::problems::inertia::impossible;
 use lieflow::problems::{Euler, Exact, Kinetic, RigidBody};
 use lieflow::scalar::{Counted, Trig};
+use lieflow_runs::schema::{Component, Measure};
+use lieflow_runs::spaces::OnSpheres;
 use nalgebra::{Matrix3, Vector3};
 
-use super::flow::OnSpheres;
 use super::prelude::*;
 use crate::problem::part;
-use crate::schema::{Component, Measure};
 
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {

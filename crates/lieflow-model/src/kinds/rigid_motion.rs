@@ -11,10 +11,10 @@ use lieflow::actions::Translation;
 use lieflow::groups::{LieGroup, Se3, So3};
 use lieflow::problems::Flow;
 use lieflow::scalar::{Counted, Trig};
+use lieflow_runs::spaces;
 use nalgebra::{Matrix3, Vector3};
 
 use super::body::{Orientation, Oriented, check_rotation, quaternion, with_angles};
-use super::flow;
 use super::prelude::*;
 use crate::formula::{Formula, Names, Texts, without_value};
 use crate::reader::values::Rows;
@@ -98,7 +98,7 @@ fn read(mut keys: Keys) -> Result<Forms, ReadError> {
 
 impl Motion {
     /// The problem on these numbers.
-    fn on<S: Trig + Into<f64> + 'static>(&self) -> flow::Motion<S> {
+    fn on<S: Trig + Into<f64> + 'static>(&self) -> spaces::Motion<S> {
         let in_body = self.in_body;
         let side = if in_body { Translation::Right } else { Translation::Left };
         let twist = self.twist.clone();
@@ -113,8 +113,8 @@ impl Motion {
         let flow = Flow::new(Se3::new(), side, field);
         let of_time = !(1..VARIABLES.len()).any(|i| self.twist.iter().any(|f| f.uses(i)));
         match of_time {
-            true => flow::Motion::linear(flow.linear(), side),
-            false => flow::Motion::new(flow, side),
+            true => spaces::Motion::linear(flow.linear(), side),
+            false => spaces::Motion::new(flow, side),
         }
     }
 
@@ -136,7 +136,7 @@ impl Oriented for Motion {
 }
 
 impl System for Motion {
-    type Problem = flow::Motion;
+    type Problem = spaces::Motion;
 
     const STATE: &'static [&'static str] = &["position", "attitude"];
     const QUANTITIES: &'static [Q] = with_angles![
@@ -182,7 +182,7 @@ impl System for Motion {
     fn layer(&self) -> Layer {
         Layer::Closed
     }
-    fn problem(&self) -> Result<Start<flow::Motion>, Error> {
+    fn problem(&self) -> Result<Start<spaces::Motion>, Error> {
         Ok((self.on(), self.start))
     }
     fn counted(&self) -> Option<Counting> {

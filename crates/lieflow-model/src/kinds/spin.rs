@@ -7,9 +7,9 @@ use lieflow::groups::So3;
 use lieflow::problems::Flow;
 use lieflow::scalar::{Counted, Trig};
 use lieflow::so3;
+use lieflow_runs::spaces::OnSphere;
 use nalgebra::Vector3;
 
-use super::flow::OnSphere;
 use super::prelude::*;
 
 /// The entry in the list of kinds.

@@ -6,9 +6,9 @@ use std::sync::Arc;
 use lieflow::actions::Linear;
 use lieflow::problems::{Bond, Constant, CoupledSpins, Couplings, Site, SpinChain};
 use lieflow::scalar::{Counted, Real as Scalar};
+use lieflow_runs::spaces::OnSpheres;
 use nalgebra::Vector3;
 
-use super::flow::OnSpheres;
 use super::prelude::*;
 use crate::formula::{Formula, Names, Text, Texts, without_value};
 

@@ -6,10 +6,10 @@
 
 use lieflow::dense::{multiply, norm, qr, singular_values, symmetric_eigen};
 use lieflow::problems::SubspaceFlow;
+use lieflow_runs::spaces::MatrixAction;
+use lieflow_runs::spaces::OnMatrices;
 
 use super::entries::{ROUNDING, check_rows, numbered, symmetric, trace, upper, upper_columns};
-use super::flow::OnMatrices;
-use super::matrix::MatrixAction;
 use super::prelude::*;
 
 /// The entry in the list of kinds.

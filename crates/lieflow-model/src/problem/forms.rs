@@ -8,14 +8,14 @@ use lieflow::catalog::MethodSpec;
 use lieflow::solve::Stops;
 use lieflow::tolerance::Tolerance;
 use lieflow::{Error, RunError};
+use lieflow_runs::run::CountOnVectors;
+use lieflow_runs::run::{Fit, Layer, Orders, Outcome, Plan, RowCurve, Steps, Watcher};
+use lieflow_runs::run::{StepByStep, Stepper};
+use lieflow_runs::schema::{Law, Schema};
 
 use super::kind::{Figure, PrincipalInertia, Property, high_order};
-use super::operations::CountOnVectors;
-use super::run::{Fit, Layer, Orders, Outcome, Plan, RowCurve, Steps, Watcher};
-use super::stepper::{StepByStep, Stepper};
 use crate::formula::Formula;
 use crate::reader::Refusal;
-use crate::schema::{Law, Schema};
 
 /// The quantities of a row, by their numbers in the list of the kind.
 #[derive(Clone, Copy, Debug)]

@@ -4,13 +4,13 @@
 //! and a method that takes them out, `formula_keys()`. A dimension may follow the type: `inertia: Reals<3> [INERTIA] = …`.
 
 use lieflow::samples::Interpolation;
+use lieflow_runs::schema::Dimension;
 
 use super::kind::{KeyInfo, Kind, ReadForms};
 use super::quantity::Quantity;
 use super::system::System;
 use crate::formula::{Names, Parameters};
 use crate::reader::{Read, ReadError, Shape, all, seen};
-use crate::schema::Dimension;
 
 /// The keys of a kind, as listings show them.
 pub(crate) trait KeyTable {
@@ -52,7 +52,7 @@ macro_rules! keys {
                     meaning: $meaning,
                     shape: <$type as $crate::reader::Read>::SHAPE,
                     optional: <$type as $crate::reader::Read>::OPTIONAL,
-                    dimension: $crate::schema::Dimension::first(&[$($crate::schema::Dimension::$dimension)?]),
+                    dimension: lieflow_runs::schema::Dimension::first(&[$(lieflow_runs::schema::Dimension::$dimension)?]),
                 },)*
                 $crate::problem::PARAMETERS,
             ];

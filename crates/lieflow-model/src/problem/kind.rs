@@ -3,12 +3,12 @@
 use lieflow::Error;
 use lieflow::catalog::MethodSpec;
 use lieflow::names::same;
+use lieflow_runs::schema::{Dimension, Units};
 use serde::Serialize;
 
 use super::forms::Forms;
 use crate::formula::Instead;
 use crate::reader::{ReadError, Shape, Value};
-use crate::schema::{Dimension, Units};
 
 /// Reads the keys of a problem, without `kind`.
 pub type ReadForms = fn(&Value) -> Result<Forms, ReadError>;

@@ -7,11 +7,11 @@ use std::time::Duration;
 use lieflow::catalog::MethodSpec;
 use lieflow::solve::Next;
 use lieflow::{Error, RunError, Stats};
+use lieflow_runs::run::Stepper;
+use lieflow_runs::run::{EventPlan, Outcome, Plan, RowCurve, Watcher};
+use lieflow_runs::schema::{Row, Schema};
 
 use super::model::Model;
-use super::run::{EventPlan, Outcome, Plan, RowCurve, Watcher};
-use super::stepper::Stepper;
-use crate::schema::{Row, Schema};
 
 /// The number of this place in a row at t, from the row of the base.
 pub(crate) type NumberOf<'a> = dyn Fn(usize, f64, Row<'_>) -> f64 + Send + Sync + 'a;
@@ -63,8 +63,9 @@ impl Watcher for OfBase<'_> {
     fn state(&mut self, bytes: &[u8]) {
         self.watcher.state(bytes);
     }
-    fn end(&mut self, t: f64, stats: &Stats) {
-        self.watcher.end(t, stats);
+    fn end(&mut self, t: f64, of_base: Row<'_>, stats: &Stats) {
+        self.fill(t, of_base);
+        self.watcher.end(t, self.mapped.schema.row(&self.numbers), stats);
     }
 }
 

@@ -9,18 +9,18 @@ use lieflow::samples::Samples;
 use lieflow::solve::Stops;
 use lieflow::tolerance::Tolerance;
 use lieflow::{Error, RunError, SaveAt, Stats, StepControl, TimeGrid};
+use lieflow_runs::run::CountOnVectors;
+use lieflow_runs::run::{
+    CurvePlace, Fit, Layer, Orders, Outcome, Plan, RowCurve, Rows, Sink, Steps, Watcher,
+};
+use lieflow_runs::run::{StepByStep, Stepper};
+use lieflow_runs::schema::Schema;
 
 use super::forms::{Asked, Form, Forms, Run};
 use super::kind::{Figure, Kind, PrincipalInertia, Property, QuantityInfo};
 use super::mapped::{Mapped, MappedCurve, MappedStepper, NumberOf, RowMap};
-use super::operations::CountOnVectors;
-use super::run::{
-    CurvePlace, Fit, Layer, Orders, Outcome, Plan, RowCurve, Rows, Sink, Steps, Watcher,
-};
-use super::stepper::{StepByStep, Stepper};
 use crate::formula::{Constants, Formula};
 use crate::reader::{Mistakes, ReadError, Refusal, Tree, Value};
-use crate::schema::Schema;
 
 /// A problem with its initial state: checked, and not yet tied to a layer or to quantities.
 ///

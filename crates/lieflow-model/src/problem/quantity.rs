@@ -1,10 +1,11 @@
 //! What can be asked of a problem: every quantity is stated once, with its columns, its meaning, its value and
 //! the law that it obeys.
 
+use lieflow_runs::schema::{Branch, Component, Dimension, Law, Measure, Numbers, Scale};
+
 use super::kind::{Kept, QuantityInfo};
 use super::system::{PointOf, System};
 use crate::reader::Refusal;
-use crate::schema::{Branch, Component, Dimension, Law, Measure, Numbers, Scale};
 
 /// The columns x11, …, xnk, row by row.
 pub(crate) fn row_columns(letter: &str, n: usize, k: usize) -> Vec<String> {

@@ -8,19 +8,17 @@ use lieflow::solve::Stops;
 use lieflow::space::check_within_reach;
 use lieflow::tolerance::Tolerance;
 use lieflow::{Error, RunError};
+use lieflow_runs::run::{
+    CountOnVectors, Counting, Fit, Layer, Orders, Outcome, Plan, Points, RowCurve, RowsOf,
+    Runnable, SharedRowOf, StepByStep, Stepper, Steps, Watcher, numbers_of, set_numbers,
+};
+use lieflow_runs::schema::{Law, Schema};
 
 use super::forms::{Asked, Form, Forms, Run};
 use super::kind::{Figure, PrincipalInertia, Property, high_order};
-use super::operations::{CountOnVectors, Counting, operations_by};
 use super::quantity::{Moment, Quantity, Value};
-use super::run::{
-    Fit, Layer, Orders, Outcome, Plan, RowCurve, RowsOf, Runnable, SharedRowOf, Steps, Watcher,
-    curve_by, drive_by, fits_by, numbers_of, orders_by, set_numbers,
-};
-use super::stepper::{Points, StepByStep, Stepper, stepper_by};
 use crate::formula::Formula;
 use crate::reader::Refusal;
-use crate::schema::{Law, Schema};
 
 /// A problem with the point that it starts from.
 pub(crate) type Start<P> = (P, lieflow::problems::PointOf<P>);
@@ -140,19 +138,7 @@ impl<S: System> Debug for On<S> {
     }
 }
 
-/// numbers ← the values of the quantities of these numbers at y.
-fn values_of<S: System>(
-    system: &S,
-    quantities: &[usize],
-    at: Moment,
-    y: &PointOf<S>,
-    numbers: &mut Vec<f64>,
-) {
-    numbers.clear();
-    append_values(system, quantities, at, y, numbers);
-}
-
-/// The same at the end of `numbers`.
+/// The values of the quantities of these numbers at y go to the end of `numbers`.
 fn append_values<S: System>(
     system: &S,
     quantities: &[usize],
@@ -238,7 +224,7 @@ impl<S: System> Run for On<S> {
         let problem = &self.ready()?.0;
         let [t0, _] = plan.steps.t_span();
         let row_of = |t: f64, y: &PointOf<S>, numbers: &mut Vec<f64>| {
-            values_of(&self.system, asked.quantities, Moment::of_run(t, t0), y, numbers);
+            append_values(&self.system, asked.quantities, Moment::of_run(t, t0), y, numbers);
             self.sizes(asked, y, numbers);
         };
         let turn_rate = |t: f64, y: &PointOf<S>| {
@@ -247,14 +233,16 @@ impl<S: System> Run for On<S> {
             rates.fold(0.0, f64::max)
         };
         let shared = || self.shared(asked.quantities, t0);
+        let points = Points::in_order(shared());
         let rows = RowsOf {
             schema: asked.schema,
             row_of: &row_of,
             turn_rate: &turn_rate,
             shared: &shared,
+            points: &points,
         };
         let start = self.start_at(plan.start.as_deref())?;
-        drive_by(method, problem, start, plan, rows, watcher)
+        S::Problem::drive(method, problem, start, plan, rows, watcher)
     }
     fn stepper(
         &self,
@@ -265,7 +253,7 @@ impl<S: System> Run for On<S> {
         let problem = &self.ready()?.0;
         let points = Points::in_order(self.shared(asked.quantities, steps.steps.t_span()[0]));
         let y = self.start_at(steps.start)?;
-        stepper_by(method, problem, y, StepByStep { start: None, ..steps }, points)
+        S::Problem::stepper(method, problem, y, StepByStep { start: None, ..steps }, points)
     }
     fn curve(
         &self,
@@ -275,26 +263,26 @@ impl<S: System> Run for On<S> {
     ) -> Result<Box<dyn RowCurve>, Error> {
         let (problem, like) = self.ready()?;
         let shared = |t0: f64| self.shared(asked.quantities, t0);
-        curve_by(method, problem, like, numbers, asked.schema, &shared)
+        S::Problem::curve(method, problem, like, numbers, asked.schema, &shared)
     }
     fn exact(&self, asked: Asked<'_>, t_span: [f64; 2]) -> Option<Result<Vec<f64>, Error>> {
         let mut values = Vec::with_capacity(asked.schema.numbers());
         let end = self.system.exact(t_span)?;
         let at = Moment::of_run(t_span[1], t_span[0]);
         Some(
-            end.map(|y| values_of(&self.system, asked.quantities, at, &y, &mut values))
+            end.map(|y| append_values(&self.system, asked.quantities, at, &y, &mut values))
                 .map(|()| values),
         )
     }
     fn orders(&self, method: &MethodSpec) -> Result<Orders, Error> {
-        orders_by(method, &*self.ready()?.0)
+        self.ready()?.0.orders(method)
     }
     fn problem_type(&self) -> &'static str {
         core::any::type_name::<S::Problem>()
     }
     fn fits(&self, method: &MethodSpec) -> Result<Fit, Error> {
         let (problem, start) = self.ready()?;
-        fits_by(method, &**problem, start)
+        problem.fits(method, start)
     }
     fn check_tolerance(&self, tolerance: &Tolerance) -> Result<(), Error> {
         check_within_reach(tolerance, &self.ready()?.1)
@@ -309,7 +297,7 @@ impl<S: System> Run for On<S> {
             return on_vectors(start, method, steps);
         }
         let (problem, start) = self.ready().ok()?;
-        operations_by(method, &**problem, start.clone(), steps)
+        problem.operations(method, start.clone(), steps)
     }
     fn check_start(&self, t0: f64) -> Vec<Refusal> {
         self.system.check_start(t0)

@@ -3,12 +3,12 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use lieflow::Error;
+use lieflow_runs::schema::{Component, Measure, Row, Schema};
 
 use crate::formula::{Formula, Lets, Names, Parameters};
 use crate::problem::Model;
 use crate::problem::{FormulaKeys, Problem};
 use crate::reader::{Mistakes, Read, ReadError, Refusal, Tree, read_by_keys, seen};
-use crate::schema::{Component, Measure, Row, Schema};
 
 /// The name of the quantity that `[output.formulas]` is.
 pub(super) const FORMULAS: &str = "formulas";

@@ -8,13 +8,13 @@
 //! | `stop_after` | the zero that ends the run, from 1; optional |
 
 use lieflow::{Direction, Error};
+use lieflow_runs::schema::{Row, Schema};
 
 use super::columns::{Columns, RowFormula};
 use crate::formula::{Formula, Text};
 use crate::problem::EventPlan;
 use crate::reader::values::Whole;
 use crate::reader::{Key, KeyPath, ReadError, Refusal, all, read_by_keys};
-use crate::schema::{Row, Schema};
 
 read_by_keys! {
     /// An entry of `[[events]]`.

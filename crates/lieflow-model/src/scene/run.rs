@@ -16,13 +16,13 @@ use crate::kinds;
 use crate::problem::{FormulaKeys, KNOTS_MAX, Kind, Problem, SAMPLES};
 use crate::problem::{Layer, Model, Plan, Steps};
 use crate::reader::{Is, KeyPath, Mistake, ReadError, Refusal, Tree, Value, seen};
-use crate::schema::{Schema, Units};
 use fnv::FnvHasher;
 use lieflow::StepControl;
 use lieflow::catalog::{MethodSpec, all_methods};
 use lieflow::samples::{Outside, Samples};
 use lieflow::solve::Stops;
 use lieflow::{Error, SaveAt, TimeGrid};
+use lieflow_runs::schema::{Schema, Units};
 
 /// A run, stated in full and checked.
 #[derive(Debug)]

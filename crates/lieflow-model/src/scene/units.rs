@@ -1,7 +1,8 @@
 //! `[units]`: the names of units. They are words beside numbers, and no number is changed.
 
+use lieflow_runs::schema::Units;
+
 use crate::reader::{Key, Mistake, ReadError, Refusal, all, read_by_keys};
-use crate::schema::Units;
 
 read_by_keys! {
     /// `[units]`.

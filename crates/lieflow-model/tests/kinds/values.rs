@@ -2,7 +2,7 @@
 
 use lieflow::catalog::MethodSpec;
 use lieflow::{SaveAt, TimeGrid};
-use lieflow_model::kinds::own::{Formulas, Frame, GroupName, OwnPlan, Space};
+use lieflow_model::kinds::own::{Formulas, Frame, GroupName, Own, Space};
 use lieflow_model::problem::{CurvePlace, Model, Plan, Rows, StepByStep, Steps};
 use lieflow_model::reader::Tree;
 
@@ -93,17 +93,11 @@ fn quantities_have_shapes() {
     assert_eq!(shape("coupled-oscillators", "map"), [4, 4]);
 }
 
-/// A run from 0 to 1 that keeps its end.
-fn to_the_end() -> OwnPlan<'static> {
-    OwnPlan {
-        steps: steps(1.0),
-        save: SaveAt::End,
-        stops: Vec::new().into(),
-        max_steps: None,
-        dense: false,
-        events: Vec::new(),
-        progress: None,
-    }
+/// y at the end of a run from 0 to 1.
+fn end_of(own: &Own, method: &str, start: &[f64]) -> Vec<f64> {
+    let plan = Plan::new(steps(1.0), SaveAt::End);
+    let method = method.parse().unwrap();
+    own.run(&method, start, plan, &mut Rows(&mut |_, _| {})).unwrap().state
 }
 
 /// Formulas on parts are the equations of a composed system, and their samples bound a run.
@@ -118,10 +112,7 @@ fn formulas_on_parts_are_a_composed_system() {
     assert!(formulas.depends_on_y() && formulas.samples().is_none());
     let own = space.problem(formulas.field(), false).unwrap();
     let method: MethodSpec = "rkmk dop853 exp".parse().unwrap();
-    let plan = to_the_end();
-    let stop = std::sync::atomic::AtomicBool::new(false);
-    let start = [0.0, 0.0, -1.0, 1.9, 0.0];
-    let end = own.run(&method, &start, plan, &mut |_, _| {}, &stop).end.unwrap().y;
+    let end = end_of(&own, "rkmk dop853 exp", &[0.0, 0.0, -1.0, 1.9, 0.0]);
 
     let (model, _) = model_of("spin-and-oscillator");
     let mut run = model.stepper(&method, steps(1.0)).unwrap();
@@ -139,7 +130,6 @@ fn formulas_on_parts_are_a_composed_system() {
 /// A state, a density matrix and a propagator of U(2) under one H are one motion, that of the closed form.
 #[test]
 fn complex_spaces_are_one_motion() {
-    let stop = std::sync::atomic::AtomicBool::new(false);
     let run = |action: &str, frame: Option<Frame>, shape: &[usize], start: &[f64]| {
         let space = Space::new(&GroupName::Named("U(2)".into()), action, frame, shape).unwrap();
         assert_eq!(space.value(), [2, 2, 2]);
@@ -149,9 +139,7 @@ fn complex_spaces_are_one_motion() {
             true
         };
         let own = space.problem(std::sync::Arc::new(field), false).unwrap();
-        let plan = to_the_end();
-        let method: MethodSpec = "rkmk dop853 exp".parse().unwrap();
-        own.run(&method, start, plan, &mut |_, _| {}, &stop).end.unwrap().y
+        end_of(&own, "rkmk dop853 exp", start)
     };
     // exp(−iHt) at t = 1: (cos ½ 𝟙 − i sin ½ n·σ) e^{−0.1i}.
     let ((s, c), (ps, pc)) = (0.5_f64.sin_cos(), 0.1_f64.sin_cos());

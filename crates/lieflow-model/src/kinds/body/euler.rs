@@ -6,6 +6,7 @@
 //! Source: E. Bernardes, S. Viollet, Quaternion to Euler angles conversion (PLoS ONE 17, 2022), which is exact near the
 //! singular angles, too.
 
+use lieflow_runs::schema::Branch;
 use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -13,7 +14,6 @@ use nalgebra::{Quaternion, UnitQuaternion};
 
 use crate::reader::values::Reals;
 use crate::reader::{KeyPath, ReadError, Refusal, help_for};
-use crate::schema::Branch;
 
 /// The axes of three turns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

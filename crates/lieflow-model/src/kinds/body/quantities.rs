@@ -2,13 +2,13 @@
 
 use lieflow::groups::{LieGroup, So3, vee};
 use lieflow::so3::{quaternion_from_matrix, quaternion_to_wxyz};
+use lieflow_runs::schema::Branch;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 use super::euler::SEQUENCES;
 use super::rotation;
 use crate::kinds::prelude::*;
 use crate::problem::PointOf;
-use crate::schema::Branch;
 
 /// A rotation from body to space, as it is integrated.
 pub(in crate::kinds) enum Orientation {

@@ -8,19 +8,17 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use lieflow::groups::{LieGroup, So3};
 use lieflow::scalar::Counted;
+use lieflow_runs::schema::{self, Measure};
+use lieflow_runs::spaces::{self, ON_PARTS, Point};
 use nalgebra::{Matrix3, Vector3};
 
 use self::system::{Coupled, Part, Space};
 use super::body::{Orientation, Oriented, check_rotation, quaternion, with_angles};
 use super::entries::check_rows;
-use super::flow;
 use super::prelude::*;
 use crate::formula::{Formula, Names, Parameters, Text, Texts, without_value};
 use crate::problem::part;
 use crate::reader::values::Numbers;
-use crate::schema::{self, Measure};
-
-pub(super) use self::system::{Field, ON_PARTS, OnParts, Parts, Point, group_of};
 
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {
@@ -330,7 +328,7 @@ impl Oriented for Composed {
 }
 
 impl System for Composed {
-    type Problem = flow::Composed;
+    type Problem = spaces::Composed;
 
     const STATE: &'static [&'static str] = &["state"];
     const QUANTITIES: &'static [Q] = with_angles![
@@ -391,9 +389,9 @@ impl System for Composed {
     fn layer(&self) -> Layer {
         Layer::Closed
     }
-    fn problem(&self) -> Result<Start<flow::Composed>, Error> {
+    fn problem(&self) -> Result<Start<spaces::Composed>, Error> {
         let coupled = Coupled::new(self.parts.clone(), &self.start)?;
-        Ok((flow::Composed::new(coupled, ON_PARTS), self.start.clone()))
+        Ok((spaces::Composed::new(coupled, ON_PARTS), self.start.clone()))
     }
     fn counted(&self) -> Option<Counting> {
         let (vectors, (rotations, numbers)) = &self.start;
@@ -401,7 +399,7 @@ impl System for Composed {
         let rotations = rotations.iter().map(|g| g.map(Counted)).collect();
         let start = (vectors, (rotations, numbers.iter().map(|&x| Counted(x)).collect()));
         let coupled = Coupled::new(self.parts.clone(), &start).ok()?;
-        counting(flow::Composed::new(coupled, ON_PARTS), start)
+        counting(spaces::Composed::new(coupled, ON_PARTS), start)
     }
     fn check_start(&self, t0: f64) -> Vec<Refusal> {
         let mut at = vec![t0];

@@ -12,26 +12,13 @@
 use core::ops::Range;
 
 use lieflow::Error;
-use lieflow::actions::{Linear, Pair, Translation};
-use lieflow::groups::{LieAlgebra, Power, Product, So3, Translations};
+use lieflow::groups::{LieAlgebra, Product};
 use lieflow::problems::Problem;
 use lieflow::scalar::{Real, Trig};
 use lieflow::space::LinearSpace;
-use nalgebra::{Matrix3, Vector3};
+use lieflow_runs::spaces::{Field, ON_PARTS, OnParts, Parts, Point, group_of};
 
 use crate::formula::Formula;
-
-type Powers<S> = Power<So3<S>>;
-/// SO(3)ⁿ × SO(3)ᵐ × T(k).
-pub(crate) type Parts<S = f64> = Product<Powers<S>, Product<Powers<S>, Translations<Box<[S]>>>>;
-/// On vectors, and on rotations and numbers.
-pub(crate) type OnParts = Pair<Linear, Translation>;
-/// Vectors, rotations and numbers.
-pub(crate) type Point<S = f64> = (Box<[Vector3<S>]>, (Box<[Matrix3<S>]>, Box<[S]>));
-/// f of each.
-pub(crate) type Field<S = f64> = (Box<[Vector3<S>]>, (Box<[Vector3<S>]>, Box<[S]>));
-
-pub(crate) const ON_PARTS: OnParts = Pair(Linear, Translation::Left);
 
 /// The space of a part, and where in a point it stands.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -122,21 +109,6 @@ impl<S: Trig + Into<f64> + LinearSpace<Scalar = S>> Number for S {}
 pub(super) struct Coupled<S: Number> {
     group: Parts<S>,
     parts: Vec<Part>,
-}
-
-/// The group of these numbers of vectors, rotations and numbers.
-///
-/// # Errors
-/// As [`Power::new`].
-pub(crate) fn group_of<S: Number>(counts: [usize; 3]) -> Result<Parts<S>, Error> {
-    let copies = |n: usize| match n {
-        0 => Ok(Power::none(So3::new())),
-        n => Power::new(So3::new(), n),
-    };
-    let [vectors, rotations, numbers] = counts;
-    let zero: Box<[S]> = (0..numbers).map(|_| S::lit(0.0)).collect();
-    let translations = Translations::new(zero, numbers);
-    Ok(Product(copies(vectors)?, Product(copies(rotations)?, translations)))
 }
 
 impl<S: Number> Coupled<S> {

@@ -5,10 +5,10 @@ use lieflow::actions::{Action, Coadjoint};
 use lieflow::dense::{inverse, norm};
 use lieflow::groups::{GroupMatrix, LieAlgebra, LieGroup, MatrixGroup};
 use lieflow::problems::{Euler, FromTheBody};
+use lieflow_runs::spaces::FromBody;
 
 use super::dual::{OnDual, quantities};
 use super::matrices::EulerEquation;
-use crate::kinds::flow::FromBody;
 use crate::kinds::prelude::*;
 use crate::problem::row_columns;
 

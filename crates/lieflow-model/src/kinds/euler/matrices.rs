@@ -4,6 +4,8 @@ use lieflow::dense::{largest_entry, norm};
 use lieflow::groups::{AlgebraMatrix, LieAlgebra, MatrixGroup};
 use lieflow::problems::{DiscreteGradient, Euler, Hamiltonian, Kinetic, MeanGradient};
 use lieflow::scalar::{Ops, tally};
+use lieflow_runs::spaces::MatrixAction;
+use lieflow_runs::spaces::OnMatrices;
 
 use super::dual::{Dual, Given, OnDual, quantities};
 use super::energy::Energy;
@@ -11,8 +13,6 @@ use super::group::WithGroup;
 use crate::formula::{Formula, Text};
 use crate::kinds::algebra::{Algebra, Miss, Named, miss};
 use crate::kinds::entries::{antisymmetric, numbered, rows, size_of_traces, square, traces};
-use crate::kinds::flow::OnMatrices;
-use crate::kinds::matrix::MatrixAction;
 use crate::kinds::prelude::*;
 use crate::problem::{FormulaKeys, SampleKeys, row_columns};
 use crate::reader::values::Numbers;

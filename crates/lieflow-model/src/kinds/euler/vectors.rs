@@ -4,12 +4,12 @@ use lieflow::actions::{Coadjoint, Linear};
 use lieflow::groups::{Adjoint, LieGroup, Power, Se3, So3};
 use lieflow::problems::{DiscreteGradient, Euler, MeanGradient};
 use lieflow::scalar::{Counted, Real, Trig};
+use lieflow_runs::spaces::{OnSe3, OnSpheres};
 use nalgebra::Vector3;
 
 use super::dual::{Dual, Given, OnDual, quantities};
 use super::energy::Energy;
 use crate::formula::{Formula, Names};
-use crate::kinds::flow::{OnSe3, OnSpheres};
 use crate::kinds::prelude::*;
 use crate::problem::PointOf;
 use crate::problem::SampleKeys;

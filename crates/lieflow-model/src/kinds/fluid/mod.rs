@@ -4,16 +4,16 @@
 //! Two midpoint rules are made for it: `isospectral2`, which keeps the Lie–Poisson structure, and
 //! `energy-casimir` with cay, which keeps the energy; both keep the spectrum.
 
-mod place;
 mod start;
 
 use lieflow::groups::ComplexMatrix;
 use lieflow::problems::{Surface, Zeitlin};
+use lieflow_runs::spaces::Place;
 
-use self::place::Place;
 use self::start::{Random, VortexKeys, Vorticity, check_size, check_surface};
 use super::entries::numbered;
 use super::prelude::*;
+use crate::problem::Ground;
 
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {
@@ -165,6 +165,10 @@ impl System for Fluid {
         grid.row_iter().map(|row| row.iter().copied().collect()).collect()
     }
     fn figure(&self) -> Figure {
-        Figure::Map("matrix", self.fluid.surface().ground())
+        let ground = match self.fluid.surface() {
+            Place::Sphere(_) => Ground::Sphere,
+            Place::Torus(_) => Ground::Torus,
+        };
+        Figure::Map("matrix", ground)
     }
 }

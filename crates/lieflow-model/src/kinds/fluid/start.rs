@@ -4,10 +4,10 @@ use core::f64::consts::{FRAC_PI_2, TAU};
 
 use lieflow::groups::ComplexMatrix;
 use lieflow::problems::{LinearSpace, Sphere, Torus, Vortex, Zeitlin};
+use lieflow_runs::spaces::Place;
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
 
-use super::place::Place;
 use crate::kinds::prelude::*;
 
 read_by_keys! {

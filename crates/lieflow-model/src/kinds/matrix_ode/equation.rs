@@ -7,13 +7,13 @@ use lieflow::dense::{largest_entry, multiply, norm, squared_norm};
 use lieflow::groups::{AlgebraMatrix, LieAlgebra, LieGroup, MatrixGroup};
 use lieflow::maps::{CoordinateMap, Exp};
 use lieflow::problems::Flow;
+use lieflow_runs::spaces::MatrixAction;
+use lieflow_runs::spaces::OnMatrices;
 
 use super::{ACTIONS, NAMED_MAX, entry_names, letters};
 use crate::formula::{Formula, without_value};
 use crate::kinds::algebra::{Algebra, Miss, miss};
 use crate::kinds::entries::{numbered, size_of_traces, traces, upper, upper_columns};
-use crate::kinds::flow::OnMatrices;
-use crate::kinds::matrix::MatrixAction;
 use crate::kinds::prelude::*;
 
 /// The equation with its initial point.

@@ -19,12 +19,12 @@ use std::sync::Arc;
 
 use lieflow::dense::largest_entry;
 use lieflow::groups::{GroupMatrix, LieAlgebra, LieGroup, MatrixGroup};
+use lieflow_runs::spaces::MatrixAction;
 
 use self::equation::{Equation, whole};
 use super::algebra::{ALGEBRAS, Algebra};
 use super::body::TYPED;
 use super::entries::{above_diagonal, check_rows, check_symmetric, side_of};
-use super::matrix::MatrixAction;
 use super::prelude::*;
 use crate::formula::{Formula, Names, Text, Texts};
 use crate::problem::row_columns;

@@ -2,10 +2,8 @@
 
 use faer::Mat;
 use lieflow::groups::{AlgebraMatrix, MatrixGroup, Se3, So3, UnitQuaternions};
+use lieflow_runs::spaces::{Field, Parts, Point, reverse};
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
-
-use crate::kinds::composed::{Field, Parts, Point};
-use crate::kinds::matrix::reverse;
 
 /// How points of this type and elements of the algebra of G are numbers by rows.
 pub(super) trait Layout<G: lieflow::LieGroup, Y>: Copy + Send + Sync + 'static {

@@ -23,7 +23,6 @@ mod layout;
 mod run;
 
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 
 use faer::Mat;
 use lieflow::actions::{Coadjoint, Linear, Pair, Translation};
@@ -31,17 +30,16 @@ use lieflow::catalog::{MethodSpec, Needs};
 use lieflow::groups::{MatrixGroup, Se3, So3, UnitQuaternions};
 use lieflow::names::{near, plain};
 use lieflow::{Error, RunError};
+use lieflow_runs::spaces::{Composed, MatrixAction, OnMatrices, OnPairs, OnQuaternions, group_of};
 
 pub use self::formulas::Formulas;
 use self::layout::{
-    ComplexMatrices, InParts, Matrices, Motions, Pairs, Quaternions, Rotations, Vectors,
+    ComplexMatrices, InParts, Layout, Matrices, Motions, Pairs, Quaternions, Rotations, Vectors,
 };
-use self::run::Typed;
-pub use self::run::{Curve, End, OwnEvent, OwnPlan, Ran, Run};
+pub use self::run::Run;
+use self::run::{Given, Typed};
 use super::algebra::Algebra;
-use super::composed::group_of;
-use super::matrix::MatrixAction;
-use crate::problem::{Orders, StepByStep, Stepper};
+use crate::problem::{Orders, Outcome, Plan, RowCurve, StepByStep, Stepper, Watcher};
 
 /// f: writes the value at (t, y) into the last slice, which is 0 before. It returns false to end the run at once.
 pub type OwnField = dyn Fn(f64, &[f64], &mut [f64]) -> bool + Send + Sync;
@@ -339,19 +337,16 @@ impl Space {
         let from = |action| if body { MatrixAction::RightTranslation } else { action };
         let run: Box<dyn Run> = match &self.kind {
             SpaceKind::Rotation => {
-                Typed::linear(So3::new(), side, Rotations, (field, body, linear))
+                Typed::linear(So3::new(), side, Rotations, ((field, body), linear))
             }
-            SpaceKind::Vector => Typed::linear(So3::new(), Linear, Vectors, (field, false, linear)),
-            SpaceKind::Motion => Typed::linear(Se3::new(), side, Motions, (field, body, linear)),
+            SpaceKind::Vector => {
+                Typed::linear(So3::new(), Linear, Vectors, ((field, false), linear))
+            }
+            SpaceKind::Motion => Typed::linear(Se3::new(), side, Motions, ((field, body), linear)),
             SpaceKind::Matrix(group, action) => {
                 let columns = self.point.get(1).copied().unwrap_or(1);
                 let layout = Matrices { rows: self.point[0], columns };
-                Typed::linear_or_poisson(
-                    group.clone(),
-                    from(*action),
-                    layout,
-                    (field, body, linear),
-                )
+                on_matrices(group, from(*action), layout, ((field, body), linear))
             }
             SpaceKind::Complex(group, action) => {
                 let layout = ComplexMatrices {
@@ -359,25 +354,34 @@ impl Space {
                     columns: if self.point.len() > 2 { self.point[1] } else { 1 },
                     vectors: *action == MatrixAction::Linear,
                 };
-                Typed::linear_or_poisson(
-                    group.clone(),
-                    from(*action),
-                    layout,
-                    (field, body, linear),
-                )
+                on_matrices(group, from(*action), layout, ((field, body), linear))
             }
             SpaceKind::Quaternion => {
-                Typed::field(UnitQuaternions, side, Quaternions, (field, body))
+                let given = (field, body);
+                Typed::<OnQuaternions, _>::field(UnitQuaternions, side, Quaternions, given)
             }
             SpaceKind::Parts(parts) => {
                 let InParts { vectors, rotations, numbers } = *parts;
-                let group = group_of([vectors, rotations, numbers])?;
-                Typed::field(group, Pair(Linear, side), *parts, (field, body))
+                let (group, action) =
+                    (group_of([vectors, rotations, numbers])?, Pair(Linear, side));
+                Typed::<Composed, _>::field(group, action, *parts, (field, body))
             }
-            SpaceKind::Pair => Typed::poisson(Se3::new(), Coadjoint, Pairs, field),
+            SpaceKind::Pair => {
+                Typed::<OnPairs, _>::field(Se3::new(), Coadjoint, Pairs, (field, false))
+            }
         };
         Ok(Own { run })
     }
+}
+
+/// A problem of matrices.
+fn on_matrices<L: Layout<MatrixGroup, Mat<f64>>>(
+    group: &MatrixGroup,
+    action: MatrixAction,
+    layout: L,
+    given: (Given, bool),
+) -> Box<dyn Run> {
+    Typed::<OnMatrices, L>::linear(group.clone(), action, layout, given)
 }
 
 /// A problem with a field of one's own.
@@ -400,17 +404,18 @@ impl Own {
         self.run.orders(method)
     }
 
-    /// Integrates from y0, by rows. `observe` sees the rows of the output. `stop` ends the run when it is set; the
-    /// field and the events may set it.
+    /// Integrates from y0, by rows. The rows that `watcher` sees are the numbers of y.
+    ///
+    /// # Errors
+    /// As [`Solve::run`](lieflow::Solve::run).
     pub fn run(
         &self,
         method: &MethodSpec,
         y0: &[f64],
-        plan: OwnPlan<'_>,
-        observe: &mut dyn FnMut(f64, &[f64]),
-        stop: &AtomicBool,
-    ) -> Ran {
-        self.run.run(method, y0, plan, observe, stop)
+        plan: Plan<'_>,
+        watcher: &mut dyn Watcher,
+    ) -> Result<Outcome, RunError> {
+        self.run.run(method, y0, plan, watcher)
     }
 
     /// A run from y0, by rows, that the caller takes step by step, with the times at which a step ends.
@@ -435,7 +440,7 @@ impl Own {
         method: &MethodSpec,
         y0: &[f64],
         numbers: &[f64],
-    ) -> Result<Box<dyn Curve>, Error> {
+    ) -> Result<Box<dyn RowCurve>, Error> {
         self.run.curve(method, y0, numbers)
     }
 }

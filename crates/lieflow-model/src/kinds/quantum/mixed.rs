@@ -4,10 +4,10 @@
 use lieflow::dense::{norm, squared_norm};
 use lieflow::groups::MEMBERSHIP;
 use lieflow::problems::{density_matrix, populations_of, von_neumann};
+use lieflow_runs::spaces::MatrixAction;
+use lieflow_runs::spaces::OnMatrices;
 
 use super::super::entries::{ROUNDING, eigenvalues, numbered, symmetric, upper_columns};
-use super::super::flow::OnMatrices;
-use super::super::matrix::MatrixAction;
 use super::super::prelude::*;
 use super::{Hamiltonian, INSTEAD, above_diagonal, hamiltonian_keys, imaginary_part, state};
 use crate::formula::Formula;

@@ -4,10 +4,10 @@
 use lieflow::dense::squared_norm;
 use lieflow::groups::MEMBERSHIP;
 use lieflow::problems::{populations, schrodinger};
+use lieflow_runs::spaces::MatrixAction;
+use lieflow_runs::spaces::OnMatrices;
 
 use super::super::entries::numbered;
-use super::super::flow::OnMatrices;
-use super::super::matrix::MatrixAction;
 use super::super::prelude::*;
 use super::{Hamiltonian, INSTEAD, hamiltonian_keys, state};
 use crate::formula::Formula;

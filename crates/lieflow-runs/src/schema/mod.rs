@@ -4,7 +4,7 @@ mod branch;
 mod dimension;
 
 pub use branch::Branch;
-pub(crate) use branch::Branches;
+pub use branch::Branches;
 pub use dimension::{Dimension, Units};
 pub use lieflow::problems::{Law, Scale};
 
@@ -155,17 +155,17 @@ impl Observable {
     }
 
     /// The place of a column in the numbers of a row.
-    pub(crate) fn place(&self, column: usize) -> usize {
+    pub fn place(&self, column: usize) -> usize {
         self.place.start + column
     }
 
     /// The places of its columns.
-    pub(crate) fn places(&self) -> Range<usize> {
+    pub fn places(&self) -> Range<usize> {
         self.place.clone()
     }
 
     /// Does a row have the size of its terms?
-    pub(crate) fn has_size(&self) -> bool {
+    pub fn has_size(&self) -> bool {
         self.size.is_some()
     }
 }
@@ -181,7 +181,7 @@ pub struct Schema {
 
 impl Schema {
     /// Add an observable at the end.
-    pub(crate) fn push(
+    pub fn push(
         &mut self,
         name: &'static str,
         columns: Vec<String>,
@@ -216,14 +216,14 @@ impl Schema {
     }
 
     /// Make the last observable a distance from M, where it is one.
-    pub(crate) fn set_distance(&mut self, is_distance: bool) {
+    pub fn set_distance(&mut self, is_distance: bool) {
         if let Some(observable) = self.observables.last_mut() {
             observable.is_distance = is_distance;
         }
     }
 
     /// Give the last observable these parts.
-    pub(crate) fn set_parts(&mut self, parts: Vec<Component>) {
+    pub fn set_parts(&mut self, parts: Vec<Component>) {
         if let Some(observable) = self.observables.last_mut() {
             if let [Component { measure: Measure::Rotation, .. }] = parts[..]
                 && observable.columns.len() == 9
@@ -235,7 +235,7 @@ impl Schema {
     }
 
     /// Make the last observable an array of such numbers; without a size a list of complex numbers, or a square matrix.
-    pub(crate) fn set_numbers(&mut self, numbers: Numbers, size: Option<[usize; 2]>) {
+    pub fn set_numbers(&mut self, numbers: Numbers, size: Option<[usize; 2]>) {
         if let Some(observable) = self.observables.last_mut() {
             let columns = observable.columns.len();
             let shape = match numbers {
@@ -251,7 +251,7 @@ impl Schema {
     }
 
     /// Let a run make this choice for the last observable.
-    pub(crate) fn set_branch(&mut self, branch: Branch) {
+    pub fn set_branch(&mut self, branch: Branch) {
         if let Some(observable) = self.observables.last_mut() {
             observable.branch = branch;
         }
@@ -263,7 +263,7 @@ impl Schema {
     }
 
     /// The schema of the first `count` observables.
-    pub(crate) fn first(&self, count: usize) -> Schema {
+    pub fn first(&self, count: usize) -> Schema {
         let observables = self.observables[..count].to_vec();
         let width = observables.last().map_or(0, |last| last.place.end);
         let sizes = observables.iter().filter(|observable| observable.has_size()).count();

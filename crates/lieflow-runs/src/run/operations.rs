@@ -9,16 +9,16 @@ use lieflow::catalog::MethodSpec;
 use lieflow::problems::{PointOf, Problem};
 use lieflow::solve::{Steps, operations_of_a_step};
 
-use super::run::Runnable;
+use super::Runnable;
 
 /// A problem on numbers that count operations and its y(t₀), as a pair.
-pub(crate) type Counting = Box<dyn Any>;
+pub type Counting = Box<dyn Any>;
 
 /// Counts the mean number of operations of a step on a problem on vectors: `lieflow_counting::operations`.
 pub type CountOnVectors = fn(Box<dyn Any>, &MethodSpec, &Steps) -> Option<f64>;
 
 /// A problem on numbers that count, and y(t₀).
-pub(crate) fn counting<P: Problem + 'static>(problem: P, y: PointOf<P>) -> Option<Counting>
+pub fn counting<P: Problem + 'static>(problem: P, y: PointOf<P>) -> Option<Counting>
 where
     PointOf<P>: 'static,
 {
@@ -26,7 +26,7 @@ where
 }
 
 /// The operations of a step of a problem on matrices.
-pub(crate) fn operations_by<P: Runnable>(
+pub(super) fn operations_by<P: Runnable>(
     spec: &MethodSpec,
     problem: &P,
     y: PointOf<P>,

@@ -10,7 +10,7 @@ use lieflow::solve::{Integrator, Stops};
 use lieflow::space::Numbers;
 use lieflow::{Error, RunError, Solve, Stats};
 
-use super::run::{Runnable, SharedRowOf, Steps, numbers_of, set_numbers};
+use super::{Runnable, SharedRowOf, Steps, numbers_of, set_numbers};
 
 /// A run that the caller takes step by step. It owns its problem.
 pub trait Stepper: Send {
@@ -22,7 +22,7 @@ pub trait Stepper: Send {
     fn stats(&self) -> Stats;
     /// Appends the values of the row at t.
     fn row(&self, values: &mut Vec<f64>);
-    /// The numbers of the state, in the order of [`Model::start`](super::Model::start).
+    /// The numbers of the state, as [`Outcome::state`](super::Outcome::state) has them.
     fn state(&self) -> Vec<f64>;
     /// Sets the state at the same time. The run goes on from it.
     ///
@@ -61,7 +61,7 @@ pub trait Stepper: Send {
 }
 
 /// What makes a point of numbers.
-pub(crate) type PointFrom<Y> = Box<dyn Fn(&[f64], &mut Y) -> Result<(), Error> + Send + Sync>;
+pub type PointFrom<Y> = Box<dyn Fn(&[f64], &mut Y) -> Result<(), Error> + Send + Sync>;
 
 /// A run that is taken step by step: its steps, the times at which a step ends, and the numbers of its start, if it is not
 /// the state of the problem.
@@ -71,7 +71,7 @@ pub struct StepByStep<'a> {
     pub steps: Steps,
     /// Times at which a step ends.
     pub stops: Stops,
-    /// The numbers of another point to start from ([`Model::start`](super::Model::start) has their order).
+    /// The numbers of another point to start from (as [`Outcome::state`](super::Outcome::state) has them).
     pub start: Option<&'a [f64]>,
     /// The limit of the attempts of a call, where it is not that of the library.
     pub max_steps: Option<u64>,
@@ -85,18 +85,18 @@ impl From<Steps> for StepByStep<'_> {
 
 /// How the points of a run are numbers.
 #[allow(missing_debug_implementations)] // closures
-pub(crate) struct Points<P: Runnable> {
+pub struct Points<P: Runnable> {
     /// The values of the row.
-    pub(crate) row_of: Box<SharedRowOf<P>>,
+    pub row_of: Box<SharedRowOf<P>>,
     /// The numbers of a point.
-    pub(crate) numbers: fn(&SharedRowOf<P>, f64, &PointOf<P>) -> Vec<f64>,
+    pub numbers: fn(&SharedRowOf<P>, f64, &PointOf<P>) -> Vec<f64>,
     /// The point of numbers.
-    pub(crate) point: PointFrom<PointOf<P>>,
+    pub point: PointFrom<PointOf<P>>,
 }
 
 impl<P: Runnable> Points<P> {
     /// The numbers of a point in the order of [`Numbers`].
-    pub(crate) fn in_order(row_of: Box<SharedRowOf<P>>) -> Self {
+    pub fn in_order(row_of: Box<SharedRowOf<P>>) -> Self {
         Points {
             row_of,
             numbers: |_, _, y| numbers_of(&mut y.clone()),
@@ -104,8 +104,13 @@ impl<P: Runnable> Points<P> {
         }
     }
 
+    /// The numbers of a point.
+    pub fn numbers_of(&self, t: f64, y: &PointOf<P>) -> Vec<f64> {
+        (self.numbers)(&self.row_of, t, y)
+    }
+
     /// The numbers of a point are those of its row.
-    pub(crate) fn by_rows(row_of: Box<SharedRowOf<P>>, point: PointFrom<PointOf<P>>) -> Self {
+    pub fn by_rows(row_of: Box<SharedRowOf<P>>, point: PointFrom<PointOf<P>>) -> Self {
         let numbers = |row_of: &SharedRowOf<P>, t: f64, y: &PointOf<P>| {
             let mut numbers = Vec::new();
             row_of(t, y, &mut numbers);
@@ -127,7 +132,7 @@ struct Typed<P: Runnable> {
 ///
 /// # Errors
 /// As [`MethodsByName::method`](lieflow::catalog::MethodsByName::method) and [`Solve::integrator`].
-pub(crate) fn stepper_by<P: Runnable>(
+pub(super) fn stepper_by<P: Runnable>(
     spec: &MethodSpec,
     problem: &Arc<P>,
     mut y: PointOf<P>,
@@ -173,7 +178,7 @@ where
         (self.points.row_of)(self.run.t(), self.run.y(), values);
     }
     fn state(&self) -> Vec<f64> {
-        (self.points.numbers)(&self.points.row_of, self.run.t(), self.run.y())
+        self.points.numbers_of(self.run.t(), self.run.y())
     }
     fn set_state(&mut self, numbers: &[f64]) -> Result<(), RunError> {
         (self.points.point)(numbers, &mut self.at)?;

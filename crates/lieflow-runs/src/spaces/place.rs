@@ -4,12 +4,12 @@ use faer::Mat;
 use lieflow::groups::ComplexMatrix;
 use lieflow::problems::{Sphere, Surface, Torus, Zeitlin};
 
-use crate::problem::Ground;
-
 /// A sphere or a torus.
 #[derive(Clone, Debug)]
-pub(super) enum Place {
+pub enum Place {
+    /// The sphere.
     Sphere(Zeitlin<Sphere>),
+    /// The torus.
     Torus(Zeitlin<Torus>),
 }
 
@@ -27,28 +27,22 @@ macro_rules! on_each {
 }
 
 impl Place {
-    /// The shape that the field is drawn on.
-    pub(super) fn ground(&self) -> Ground {
-        match self {
-            Place::Sphere(_) => Ground::Sphere,
-            Place::Torus(_) => Ground::Torus,
-        }
-    }
-    pub(super) fn name(&self) -> &'static str {
+    /// Its name in scenes.
+    pub fn name(&self) -> &'static str {
         match self {
             Place::Sphere(_) => "sphere",
             Place::Torus(_) => "torus",
         }
     }
     /// The values of the vorticity on the grid of the picture.
-    pub(super) fn on_grid(&self, w: &ComplexMatrix) -> Mat<f64> {
+    pub fn on_grid(&self, w: &ComplexMatrix) -> Mat<f64> {
         match self {
             Place::Sphere(fluid) => fluid.on_grid(w, SPHERE_GRID[0], SPHERE_GRID[1]),
             Place::Torus(fluid) => fluid.on_grid(w, TORUS_GRID[0], TORUS_GRID[1]),
         }
     }
     /// The names of the coefficients: w_lm on the sphere, (a, b) of a cos(m·x) + b sin(m·x) on the torus.
-    pub(super) fn coefficient_names(&self) -> Vec<String> {
+    pub fn coefficient_names(&self) -> Vec<String> {
         match self {
             Place::Sphere(fluid) => (1..=fluid.n() * fluid.n()).map(|k| format!("w{k}")).collect(),
             Place::Torus(fluid) => {
@@ -57,7 +51,8 @@ impl Place {
             }
         }
     }
-    pub(super) fn coefficients(&self, w: &ComplexMatrix) -> Vec<f64> {
+    /// The coefficients of these names.
+    pub fn coefficients(&self, w: &ComplexMatrix) -> Vec<f64> {
         match self {
             Place::Sphere(fluid) => fluid.coefficients(w, fluid.n()),
             Place::Torus(fluid) => {

@@ -1,6 +1,14 @@
 //! Runs of a problem of any type: their arguments and their results.
 
-use core::cell::RefCell;
+mod drive;
+mod following;
+mod operations;
+mod stepper;
+mod types;
+
+pub use operations::{CountOnVectors, Counting, counting};
+pub use stepper::{PointFrom, Points, StepByStep, Stepper};
+
 use core::fmt::{self, Debug};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -8,17 +16,15 @@ use std::time::Duration;
 
 use lieflow::catalog::{MethodSpec, MethodsByName};
 use lieflow::groups::LieAlgebra;
-use lieflow::methods::{AnyMethod, Facts, Method, Within};
 use lieflow::names::same;
 use lieflow::problems::PointOf;
-use lieflow::solve::{Interpolant, Interrupted, LONG_STEPS, Next, Solution, Status};
+use lieflow::solve::{Next, Status};
 use lieflow::space::Numbers;
-use lieflow::{Action, Direction, Error, Event, RunError, SaveAt, Solve, Stats};
+use lieflow::{Action, Direction, Error, RunError, SaveAt, Stats};
 
 pub use lieflow::solve::{Steps, Stops};
 
-use super::following::following;
-use crate::schema::{Branches, Row, Schema};
+use crate::schema::{Row, Schema};
 
 /// Which code a problem runs on. Methods that stay on the group agree on the two to rounding; the
 /// stages of a classical one leave it, and what it makes of an attitude agrees to its order.
@@ -69,7 +75,7 @@ pub struct EventPlan<'a> {
     pub stop_after: Option<u64>,
     /// The number of points within each step where the function is evaluated; that of the library where there is none.
     pub points: Option<u32>,
-    /// What changes the numbers of the point at each zero ([`Model::start`](super::Model::start) has their order).
+    /// What changes the numbers of the point at each zero (as [`Outcome::state`] has them).
     pub change: Option<Change<'a>>,
 }
 
@@ -122,7 +128,7 @@ pub struct Plan<'a> {
     pub checkpoints: Option<Duration>,
     /// The state to go on from.
     pub resume: Option<Vec<u8>>,
-    /// The numbers of another point to start from ([`Model::start`](super::Model::start) has their order).
+    /// The numbers of another point to start from (as [`Outcome::state`] has them).
     pub start: Option<Vec<f64>>,
     /// The place of the rows at all times, if they are kept. A method whose points within a step call f again is refused.
     pub curve: Option<CurvePlace<'a>>,
@@ -148,7 +154,7 @@ pub trait RowCurve: Send + Sync {
     /// # Errors
     /// The number of the time that failed, and why: a time outside of the run.
     fn rows(&self, times: &[f64], values: &mut Vec<f64>) -> Result<(), (usize, RunError)>;
-    /// All its numbers, for [`Model::curve`](super::Model::curve).
+    /// All its numbers, for [`Runnable::curve`].
     fn numbers(&self) -> Vec<f64>;
 }
 
@@ -214,8 +220,8 @@ pub trait Watcher {
     fn progress(&mut self, _t: f64) {}
     /// The state, to go on from.
     fn state(&mut self, _bytes: &[u8]) {}
-    /// The end of a run that began, also of one that failed: the time, and what the run did.
-    fn end(&mut self, _t: f64, _stats: &Stats) {}
+    /// The end of a run that began, also of one that failed: the time, the row, and what the run did.
+    fn end(&mut self, _t: f64, _row: Row<'_>, _stats: &Stats) {}
 }
 
 /// A sink as a watcher.
@@ -263,26 +269,72 @@ pub struct Fit {
 }
 
 /// A problem that runs are made of: its methods by name, on numbers that a file can hold.
+///
+/// Each function is compiled in this crate, for each type of problem once.
 pub trait Runnable:
     MethodsByName<
         Group: LieAlgebra<Scalar: Into<f64>, Alg: Numbers>,
         Action: Action<Self::Group, Point: Numbers>,
-    > + Send
+    > + Sized
+    + Send
     + Sync
     + 'static
 {
-}
-impl<P> Runnable for P where
-    P: MethodsByName<
-            Group: LieAlgebra<Scalar: Into<f64>, Alg: Numbers>,
-            Action: Action<<P as lieflow::Problem>::Group, Point: Numbers>,
-        > + Send
-        + Sync
-        + 'static
-{
+    /// Integrates `problem` from `y` by the method that `spec` names.
+    ///
+    /// # Errors
+    /// As [`MethodsByName::method`] and [`Solve::run`](lieflow::Solve::run).
+    fn drive(
+        spec: &MethodSpec,
+        problem: &Arc<Self>,
+        y: PointOf<Self>,
+        plan: Plan<'_>,
+        rows: RowsOf<'_, Self>,
+        watcher: &mut dyn Watcher,
+    ) -> Result<Outcome, RunError>;
+
+    /// The run of a problem from y that the caller takes step by step.
+    ///
+    /// # Errors
+    /// As [`MethodsByName::method`] and [`Solve::integrator`](lieflow::Solve::integrator).
+    fn stepper(
+        spec: &MethodSpec,
+        problem: &Arc<Self>,
+        y: PointOf<Self>,
+        steps: StepByStep<'_>,
+        points: Points<Self>,
+    ) -> Result<Box<dyn Stepper>, RunError>;
+
+    /// The curve of these numbers. `shared` makes the values of its rows, for a run that starts at a time.
+    ///
+    /// # Errors
+    /// As [`MethodsByName::method`] and [`Interpolant::from_numbers`](lieflow::solve::Interpolant::from_numbers).
+    fn curve(
+        spec: &MethodSpec,
+        problem: &Arc<Self>,
+        like: &PointOf<Self>,
+        numbers: &[f64],
+        schema: &Schema,
+        shared: &dyn Fn(f64) -> Box<SharedRowOf<Self>>,
+    ) -> Result<Box<dyn RowCurve>, Error>;
+
+    /// The orders of the method that `spec` names.
+    ///
+    /// # Errors
+    /// As [`MethodsByName::method`].
+    fn orders(&self, spec: &MethodSpec) -> Result<Orders, Error>;
+
+    /// Can the method that `spec` names run on the problem?
+    ///
+    /// # Errors
+    /// The reason why it cannot.
+    fn fits(&self, spec: &MethodSpec, y: &PointOf<Self>) -> Result<Fit, Error>;
+
+    /// The mean number of operations of a step from y, of a problem on matrices.
+    fn operations(&self, spec: &MethodSpec, y: PointOf<Self>, steps: &Steps) -> Option<f64>;
 }
 
-/// The numbers of the row at (t, y). Behind a pointer, so that every kind with a type of problem shares
+/// What appends the numbers of the row at (t, y). Behind a pointer, so that every kind with a type of problem shares
 /// what is compiled for it.
 pub type RowOf<'a, P> = dyn Fn(f64, &PointOf<P>, &mut Vec<f64>) + 'a;
 
@@ -290,202 +342,22 @@ pub type RowOf<'a, P> = dyn Fn(f64, &PointOf<P>, &mut Vec<f64>) + 'a;
 pub type SharedRowOf<P> = dyn Fn(f64, &PointOf<P>, &mut Vec<f64>) + Send + Sync;
 
 /// The rows of a run: their schema, their numbers, and what makes their values for a curve.
-pub(crate) struct RowsOf<'a, P: Runnable> {
-    pub(crate) schema: &'a Schema,
-    pub(crate) row_of: &'a RowOf<'a, P>,
+#[allow(missing_debug_implementations)] // closures
+pub struct RowsOf<'a, P: Runnable> {
+    /// Their schema.
+    pub schema: &'a Schema,
+    /// What appends the numbers of a row.
+    pub row_of: &'a RowOf<'a, P>,
     /// How fast the state turns at (t, y), in radians per time.
-    pub(crate) turn_rate: &'a dyn Fn(f64, &PointOf<P>) -> f64,
-    pub(crate) shared: &'a dyn Fn() -> Box<SharedRowOf<P>>,
-}
-
-/// The rows of a run of this type of problem at all times.
-struct CurveOf<P: Runnable> {
-    points: Interpolant<'static, P, AnyMethod<'static, P>>,
-    row_of: Box<SharedRowOf<P>>,
-    branches: Branches,
-}
-
-impl<P: Runnable> RowCurve for CurveOf<P> {
-    fn t_span(&self) -> [f64; 2] {
-        self.points.t_span()
-    }
-    fn steps(&self) -> usize {
-        self.points.steps()
-    }
-    fn rows(&self, times: &[f64], values: &mut Vec<f64>) -> Result<(), (usize, RunError)> {
-        let mut reader = self.points.reader().map_err(|error| (0, error.into()))?;
-        for (i, &t) in times.iter().enumerate() {
-            let row = values.len();
-            (self.row_of)(t, reader.at(t).map_err(|error| (i, error))?, values);
-            self.branches.follow_known(t, &mut values[row..]);
-        }
-        Ok(())
-    }
-    /// Those of the points, those of the choices, and how many the last are.
-    fn numbers(&self) -> Vec<f64> {
-        let (mut numbers, choices) = (self.points.numbers(), self.branches.numbers());
-        numbers.extend_from_slice(&choices);
-        numbers.push(choices.len() as f64);
-        numbers
-    }
-}
-
-/// The curve of these numbers. `shared` makes the values of its rows, for a run that starts at a time.
-///
-/// # Errors
-/// As [`MethodsByName::method`] and [`Interpolant::from_numbers`].
-pub(crate) fn curve_by<P: Runnable>(
-    spec: &MethodSpec,
-    problem: &Arc<P>,
-    like: &PointOf<P>,
-    numbers: &[f64],
-    schema: &Schema,
-    shared: &dyn Fn(f64) -> Box<SharedRowOf<P>>,
-) -> Result<Box<dyn RowCurve>, Error> {
-    let method = Arc::new(problem.method(spec)?);
-    let (choices, numbers) = numbers
-        .split_last()
-        .map_or((0, numbers), |(&choices, numbers)| (choices as usize, numbers));
-    let (numbers, choices) = numbers.split_at(numbers.len().saturating_sub(choices));
-    let points = Interpolant::from_numbers(problem.clone(), method, like, numbers)?;
-    let mut branches = Branches::new(schema, points.t_span());
-    branches.set_numbers(choices);
-    let row_of = shared(points.t_span()[0]);
-    Ok(Box::new(CurveOf { points, row_of, branches }))
-}
-
-/// Integrate `problem` from `y` by the method that `spec` names: see [`Model::drive`](super::Model::drive).
-///
-/// # Errors
-/// As [`MethodsByName::method`] and [`Solve::run`].
-pub(crate) fn drive_by<P: Runnable>(
-    spec: &MethodSpec,
-    problem: &Arc<P>,
-    y: PointOf<P>,
-    plan: Plan<'_>,
-    RowsOf { schema, row_of, turn_rate, shared }: RowsOf<'_, P>,
-    watcher: &mut dyn Watcher,
-) -> Result<Outcome, RunError> {
-    let method = Arc::new(problem.method(spec)?);
-    let Plan { steps, save, times_by_steps, stops, .. } = plan;
-    let Plan { events, max_steps, cancel, checkpoints, resume, curve, .. } = plan;
-    let (watcher, numbers) = (RefCell::new(watcher), RefCell::new(Vec::new()));
-    let mut branches = Branches::new(schema, steps.t_span());
-    let resume = resume.map(|bytes| branches.take_from(bytes));
-    if curve.is_some() {
-        branches.keep_all();
-    }
-    let branches = RefCell::new(branches);
-    let fill = |t: f64, y: &PointOf<P>| {
-        let mut numbers = numbers.borrow_mut();
-        row_of(t, y, &mut numbers);
-        branches.borrow_mut().follow(t, &mut numbers);
-    };
-    let gap = schema.longest_gap();
-    let is_long = method.facts(problem).order >= LONG_STEPS;
-    let [t0, t1] = steps.t_span();
-    let mut solve = Solve::shared(problem.clone(), method, steps.t_span()).save(save).stops(stops);
-    solve = match steps {
-        Steps::Equal(grid) => solve.grid(grid),
-        Steps::ByError { control, .. } => solve.control(match gap {
-            Some(gap) if gap < control.longest_step() => {
-                control.clone().max_step(gap).unwrap_or(control)
-            }
-            _ => control,
-        }),
-    };
-    if times_by_steps {
-        solve = solve.times_by_steps();
-    }
-    if let Some(attempts) = max_steps {
-        solve = solve.max_steps(attempts);
-    }
-    if let Some(flag) = cancel {
-        solve = solve.cancel(flag);
-    }
-    if let Some(bytes) = resume {
-        solve = solve.resume(bytes);
-    }
-    if let Some(every) = checkpoints {
-        solve = solve.checkpoints(every, |bytes| {
-            watcher.borrow_mut().state(&branches.borrow().append_to(bytes));
-        });
-    }
-    let (fill, numbers) = (&fill, &numbers);
-    let follow = &|t: f64, y: &PointOf<P>| {
-        fill(t, y);
-        watcher.borrow_mut().followed(t, schema.row(&numbers.borrow()));
-    };
-    if !branches.borrow().is_empty() {
-        let least = gap.map_or(0.0, |gap| 1.0 / gap);
-        let rate = move |t: f64, y: &PointOf<P>| turn_rate(t, y).max(least);
-        solve = solve.event(following(follow, rate, [t1 > t0, is_long]));
-    }
-    for (index, event) in events.into_iter().enumerate() {
-        let EventPlan { name, value, direction, stop_after, points, change, .. } = event;
-        let (watcher, branches, changes) = (&watcher, &branches, change.is_some());
-        let mut event = Event::new(name, move |t, y: &PointOf<P>| {
-            fill(t, y);
-            value(t, schema.row(&numbers.borrow()))
-        })
-        .direction(direction)
-        .tell(move |t, y, rising| {
-            fill(t, y);
-            let numbers = numbers.borrow();
-            if changes {
-                branches.borrow_mut().cut(t, &numbers);
-            }
-            watcher.borrow_mut().event(index, t, rising, schema.row(&numbers));
-        });
-        if let Some(count) = stop_after {
-            event = event.stop_after(count);
-        }
-        if let Some(points) = points {
-            event = event.points(points);
-        }
-        if let Some(mut change) = change {
-            event = event.change(move |t, y| {
-                let mut numbers = numbers_of(y);
-                change(t, &mut numbers);
-                let mut next = numbers.into_iter();
-                y.each_number(&mut |x| *x = next.next().unwrap_or(*x));
-            });
-        }
-        solve = solve.event(event);
-    }
-    let solve = solve.progress(|t| watcher.borrow_mut().progress(t)).ends_of_steps(|t, y| {
-        fill(t, y);
-        watcher.borrow_mut().end_of_step(t, schema.row(&numbers.borrow()));
-    });
-    let see = |t: f64, y: &mut PointOf<P>| {
-        fill(t, y);
-        watcher.borrow_mut().row(t, schema.row(&numbers.borrow()))
-    };
-    let done = match curve {
-        None => solve.run_with(y, see),
-        Some(CurvePlace(place)) => {
-            let (done, points) = solve.run_interpolant_with(y, see);
-            *place = points.into_shared().map(|points| {
-                let branches = branches.borrow().clone().of_run();
-                Box::new(CurveOf { points, row_of: shared(), branches }) as Box<dyn RowCurve>
-            });
-            done
-        }
-    };
-    let end = match &done {
-        Ok(done) => Some(done),
-        Err(Interrupted { solution, .. }) => solution.as_deref(),
-    };
-    if let Some(end) = end {
-        watcher.borrow_mut().end(end.t, &end.stats);
-    }
-    let Solution { t, mut y, status, stats, .. } = done?;
-    fill(t, &y);
-    Ok(Outcome { t, status, stats, state: numbers_of(&mut y), row: numbers.take() })
+    pub turn_rate: &'a dyn Fn(f64, &PointOf<P>) -> f64,
+    /// What makes the values of the rows of a curve.
+    pub shared: &'a dyn Fn() -> Box<SharedRowOf<P>>,
+    /// How the points are numbers: those of the start, of changes by events, and of the end.
+    pub points: &'a Points<P>,
 }
 
 /// The numbers of a point, in the order of [`Numbers`].
-pub(crate) fn numbers_of<Y: Numbers>(y: &mut Y) -> Vec<f64> {
+pub fn numbers_of<Y: Numbers>(y: &mut Y) -> Vec<f64> {
     let mut numbers = Vec::new();
     y.each_number(&mut |x| numbers.push(*x));
     numbers
@@ -495,7 +367,7 @@ pub(crate) fn numbers_of<Y: Numbers>(y: &mut Y) -> Vec<f64> {
 ///
 /// # Errors
 /// [`Error::Length`] for another number of them.
-pub(crate) fn set_numbers<Y: Numbers>(y: &mut Y, arg: &str, numbers: &[f64]) -> Result<(), Error> {
+pub fn set_numbers<Y: Numbers>(y: &mut Y, arg: &str, numbers: &[f64]) -> Result<(), Error> {
     let mut count = 0;
     y.each_number(&mut |_| count += 1);
     if numbers.len() != count {
@@ -505,25 +377,4 @@ pub(crate) fn set_numbers<Y: Numbers>(y: &mut Y, arg: &str, numbers: &[f64]) -> 
     let mut next = numbers.iter();
     y.each_number(&mut |x| *x = next.next().copied().unwrap_or(*x));
     Ok(())
-}
-
-/// The orders of the method that `spec` names: see [`Model::orders`](super::Model::orders).
-///
-/// # Errors
-/// As [`MethodsByName::method`].
-pub fn orders_by<P: Runnable>(spec: &MethodSpec, problem: &P) -> Result<Orders, Error> {
-    let method = problem.method(spec)?;
-    let Facts { order, dense_order, stays_on_manifold, .. } = method.facts(problem);
-    let step = (order != usize::MAX).then_some(order);
-    Ok(Orders { step, within: dense_order, stays_on_manifold })
-}
-
-/// Can the method that `spec` names run on the problem? See [`Model::fits`](super::Model::fits).
-///
-/// # Errors
-/// The reason why it cannot.
-pub fn fits_by<P: Runnable>(spec: &MethodSpec, problem: &P, y: &PointOf<P>) -> Result<Fit, Error> {
-    let method = problem.method(spec)?;
-    let keeps_points = method.within(&method.work(problem, y)?) != Within::Steps;
-    Ok(Fit { keeps_points: [keeps_points, keeps_points && method.has_pair(problem)] })
 }

@@ -19,19 +19,26 @@ use lieflow::{CoordinateMap, Error, StepError};
 
 /// Which action.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum MatrixAction {
+pub enum MatrixAction {
+    /// g p.
     Linear,
+    /// g p, p ∈ G.
     Translation,
+    /// p g⁻¹, p ∈ G.
     RightTranslation,
+    /// g p g⁻¹.
     Conjugation,
+    /// g⁻ᵀ p gᵀ.
     Coadjoint,
+    /// (C + Dp)(A + Bp)⁻¹.
     Lagrangian,
 }
 
 type Inverting = <MatrixGroup as Adjoint>::Inverting;
 
 /// Scratch of the one that was chosen.
-pub(super) enum MatrixWork {
+#[allow(missing_debug_implementations, missing_docs)] // scratch
+pub enum MatrixWork {
     Linear,
     Translation([GroupMatrix; 2]),
     /// With g⁻¹ and its scratch.
@@ -42,7 +49,7 @@ pub(super) enum MatrixWork {
 }
 
 /// x ← −x.
-pub(super) fn reverse(x: &mut Mat<f64>) {
+pub fn reverse(x: &mut Mat<f64>) {
     x.col_iter_mut().for_each(|column| column.iter_mut().for_each(|x| *x = -*x));
 }
 

@@ -62,7 +62,7 @@ impl Branch {
     }
 
     /// values ← the choice that is nearest to the values `before`; as they are, where one of these is NaN.
-    pub(crate) fn follow(self, before: &[f64], values: &mut [f64]) {
+    pub fn follow(self, before: &[f64], values: &mut [f64]) {
         match self {
             Branch::Single => {}
             Branch::Sign => {
@@ -175,7 +175,7 @@ impl Known {
 /// that lie close to a known one are not kept: there the choice is the same. A point that is further than all others is
 /// taken as the end of a new step.
 #[derive(Clone, Debug)]
-pub(crate) struct Branches {
+pub struct Branches {
     columns: Vec<(Branch, Range<usize>)>,
     is_forward: bool,
     /// The time at the end of the step.
@@ -195,7 +195,7 @@ pub(crate) struct Branches {
 
 impl Branches {
     /// Those of a model, before its first point.
-    pub(crate) fn new(schema: &Schema, [t0, t1]: [f64; 2]) -> Self {
+    pub fn new(schema: &Schema, [t0, t1]: [f64; 2]) -> Self {
         let with_choices = schema.iter().filter(|observable| observable.branch != Branch::Single);
         let columns: Vec<_> = with_choices.map(|o| (o.branch, o.places())).collect();
         Branches {
@@ -211,12 +211,12 @@ impl Branches {
     }
 
     /// Keeps the known points of all steps, for [`of_run`](Self::of_run).
-    pub(crate) fn keep_all(&mut self) {
+    pub fn keep_all(&mut self) {
         self.before = Some(Known::default());
     }
 
     /// The choices of a whole run that kept its points.
-    pub(crate) fn of_run(mut self) -> Self {
+    pub fn of_run(mut self) -> Self {
         self.known = self.before.take().map_or(Known::default(), |mut all| {
             all.append(&self.known);
             all
@@ -233,7 +233,7 @@ impl Branches {
     }
 
     /// True if no value has a choice.
-    pub(crate) fn is_empty(&self) -> bool {
+    pub fn is_empty(&self) -> bool {
         self.columns.is_empty()
     }
 
@@ -270,7 +270,7 @@ impl Branches {
     }
 
     /// numbers ← the row at t with the choices that go on from the points before it.
-    pub(crate) fn follow(&mut self, t: f64, numbers: &mut [f64]) {
+    pub fn follow(&mut self, t: f64, numbers: &mut [f64]) {
         if self.is_empty() {
             return;
         }
@@ -304,14 +304,14 @@ impl Branches {
     }
 
     /// Ends the step at t, where the numbers are these: what comes next starts there.
-    pub(crate) fn cut(&mut self, t: f64, numbers: &[f64]) {
+    pub fn cut(&mut self, t: f64, numbers: &[f64]) {
         let end: Vec<f64> = self.places().map(|place| numbers[place]).collect();
         self.restart(self.moment(t), &end);
         (self.end, self.front) = (end, t);
     }
 
     /// numbers ← the row at any t of a run whose points are all known.
-    pub(crate) fn follow_known(&self, t: f64, numbers: &mut [f64]) {
+    pub fn follow_known(&self, t: f64, numbers: &mut [f64]) {
         let mut values: Vec<f64> = self.places().map(|place| numbers[place]).collect();
         self.choose(t, &mut values);
         for (place, value) in self.places().zip(values) {
@@ -320,13 +320,13 @@ impl Branches {
     }
 
     /// The known points as numbers.
-    pub(crate) fn numbers(&self) -> Vec<f64> {
+    pub fn numbers(&self) -> Vec<f64> {
         let all = self.known.values.chunks_exact(self.count().max(1)).zip(&self.known.moments);
         all.flat_map(|(values, moment)| [&[moment.time()], values].concat()).collect()
     }
 
     /// Knows the points of these [`numbers`](Self::numbers), too.
-    pub(crate) fn set_numbers(&mut self, numbers: &[f64]) {
+    pub fn set_numbers(&mut self, numbers: &[f64]) {
         for point in numbers.chunks_exact(self.count() + 1) {
             self.known.append(&Known {
                 moments: vec![Moment::of(point[0])],
@@ -336,7 +336,7 @@ impl Branches {
     }
 
     /// The state of a run: that of its driver, and the values of the last step after it.
-    pub(crate) fn append_to(&self, driver: &[u8]) -> Vec<u8> {
+    pub fn append_to(&self, driver: &[u8]) -> Vec<u8> {
         let mut bytes = driver.to_vec();
         if !self.is_empty() {
             let mut write = |x: f64| bytes.extend(x.to_le_bytes());
@@ -354,7 +354,7 @@ impl Branches {
 
     /// Goes on from [`append_to`](Self::append_to); the state of the driver. Bytes that are too short are left to the
     /// driver to refuse.
-    pub(crate) fn take_from(&mut self, mut bytes: Vec<u8>) -> Vec<u8> {
+    pub fn take_from(&mut self, mut bytes: Vec<u8>) -> Vec<u8> {
         if self.is_empty() {
             return bytes;
         }

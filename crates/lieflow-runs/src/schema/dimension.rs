@@ -54,7 +54,7 @@ impl Dimension {
     }
 
     /// The only one of a list.
-    pub(crate) const fn first(dimensions: &[Dimension]) -> Option<Dimension> {
+    pub const fn first(dimensions: &[Dimension]) -> Option<Dimension> {
         match dimensions {
             [first, ..] => Some(*first),
             [] => None,
