@@ -321,6 +321,27 @@ fn random_rotations_follow_haars_measure() {
     for n in [2, 3, 4, 5] {
         laws::haar(&so(n)).unwrap_or_else(|seen| panic!("so({n}): {seen}"));
     }
+    // [X −Y; Y X] of a unitary X + iY has the entries of a rotation.
+    let compact = [
+        MatrixGroup::u(1),
+        MatrixGroup::u(2),
+        MatrixGroup::u(3),
+        MatrixGroup::su(2),
+        MatrixGroup::su(3),
+        MatrixGroup::gm(Mat::identity(3, 3)),
+        MatrixGroup::gm(-4.0 * Mat::<f64>::identity(3, 3)),
+    ];
+    for group in compact.map(|group| group.expect("a group")) {
+        laws::haar(&group).unwrap_or_else(|seen| panic!("{}: {seen}", group.name()));
+    }
+    let group = MatrixGroup::gm(mat![[4.0, 1.0], [1.0, 2.0]]).expect("a group");
+    let mut rng = Pcg64::seed_from_u64(3);
+    let mean = (0..4000).map(|_| group.sample_element(&mut rng)).fold(0.0, |sum, g| {
+        assert!(group.defect(&g) < 1e-14, "{g:?}");
+        sum + g[(0, 0)] + g[(1, 1)]
+    });
+    // The trace of a plane rotation: mean 0, deviation √2.
+    assert!(mean.abs() / 4000.0 < 5.0 * (2.0 / 4000.0_f64).sqrt(), "{mean}");
 }
 
 #[test]
