@@ -54,21 +54,35 @@ fn read(keys: Keys) -> Result<Forms, ReadError> {
 }
 
 impl Riccati {
-    /// A bound of |d/dt| of the sum of the angles: it is tr XᵀSX with S = \[C D; Dᵀ −B\] and orthonormal columns X of the
-    /// subspace, so it is at most the sum of the m largest eigenvalues of S, and at least that of the m smallest.
-    fn rate_of_angles(&self) -> f64 {
+    /// The s of P = sQ that makes the equation of Q, with C/s and sB, the slowest.
+    fn scale(&self) -> f64 {
+        let [c, d, b, p] = [&self.c, &self.d, &self.b, &self.p].map(|x| x.norm_l2());
+        let scale = match (c > 0.0, d > 0.0, b > 0.0) {
+            (true, _, true) => (c / b).sqrt(),
+            (true, true, false) => c / d,
+            (false, true, true) => d / b,
+            _ => c.max(p),
+        };
+        if scale > 0.0 && scale.is_finite() { scale } else { 1.0 }
+    }
+
+    /// The angles, arctan of the eigenvalues, as a run follows them: as those of Q with P = sQ.
+    ///
+    /// The rate of their sum is tr XᵀSX with S = \[C/s D; Dᵀ −sB\] and orthonormal columns X of the subspace, so it is at
+    /// most the sum of the m largest eigenvalues of S, and at least that of the m smallest.
+    fn branch(&self) -> Branch {
         let Riccati { c, d, b, .. } = self;
-        let m = c.nrows();
+        let (m, scale) = (c.nrows(), self.scale());
         let s = Mat::from_fn(2 * m, 2 * m, |i, j| match (i < m, j < m) {
-            (true, true) => c[(i, j)],
+            (true, true) => c[(i, j)] / scale,
             (true, false) => d[(i, j - m)],
             (false, true) => d[(j, i - m)],
-            (false, false) => -b[(i - m, j - m)],
+            (false, false) => -scale * b[(i - m, j - m)],
         });
         let eigenvalues = eigenvalues(&s);
         let [low, high] =
             [&eigenvalues[..m], &eigenvalues[m..]].map(|half| half.iter().sum::<f64>());
-        high.max(-low)
+        Branch::HalfTurns { rate: high.max(-low), scale }
     }
 }
 
@@ -76,6 +90,8 @@ impl System for Riccati {
     type Problem = OnMatrices;
 
     const STATE: &'static [&'static str] = &["p"];
+    // f is constant: each step is exact, whatever the sizes of C, D and B.
+    const DEFAULT_METHOD: Option<&'static str> = Some("magnus6");
     /// None is kept: the action moves each Lagrangian subspace to each.
     const QUANTITIES: &'static [Q] = &[
         Q::numbers(
@@ -93,7 +109,7 @@ impl System for Riccati {
             |_, _, p, row| row.extend(eigenvalues(p).iter().map(|x| x.atan())),
         )
         .in_radians()
-        .continuous_by(|riccati| Branch::HalfTurns { rate: riccati.rate_of_angles() })
+        .continuous_by(Riccati::branch)
         .with_columns(|riccati| numbered("angle", riccati.p.nrows())),
     ];
 

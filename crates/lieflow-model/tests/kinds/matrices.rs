@@ -163,6 +163,42 @@ fn riccati_past_a_pole() {
     }
 }
 
+/// P = s tanh t in other units: the steps are those of s = 1, and so are the half turns.
+#[test]
+fn riccati_equations_in_other_units_take_the_same_steps() {
+    for s in [1.0, 1e-6, 1e4, 1e8] {
+        let problem =
+            format!("kind = \"riccati\"\nc = [[{s:e}]]\nb = [[{:e}]]\np = [[0]]", 1.0 / s);
+        for method in ["rkmk dop853", "magnus6", "rk dop853"] {
+            let of = scene(
+                &problem,
+                &format!("name = {method:?}"),
+                "t_span = [0, 5]\nrtol = 1e-8",
+                "[\"p\", \"angles\"]",
+            );
+            let row = &last(&of)[..];
+            let (p, angle) = (s * 5f64.tanh(), (s * 5f64.tanh()).atan());
+            assert!((row[0] / p - 1.0).abs() < 1e-7, "{s:e} {method}: {row:?}");
+            assert!((row[1] - angle).abs() < 1e-7 * angle, "{s:e} {method}: {row:?}");
+            let mut plan = of.plan(of.model().unwrap().schema()).unwrap();
+            plan.save = SaveAt::Ends;
+            let done =
+                of.model().unwrap().drive(&of.method, plan, &mut Rows(&mut |_, _| {})).unwrap();
+            assert!(done.stats.accepted < 60, "{s:e} {method}: {} steps", done.stats.accepted);
+        }
+    }
+    // P = s tan t passes its poles.
+    for s in [1e-6, 1.0, 1e6] {
+        let problem =
+            format!("kind = \"riccati\"\nc = [[{s:e}]]\nb = [[{:e}]]\np = [[0]]", -1.0 / s);
+        let of =
+            scene(&problem, "name = \"magnus6\"", "t_span = [0, 20]\nrtol = 1e-8", "[\"angles\"]");
+        let half_turns = (20.0 / PI).round();
+        let angle = half_turns * PI + (s * (20.0 - half_turns * PI).tan()).atan();
+        assert!((last(&of)[0] - angle).abs() < 1e-6, "{s:e}: {:?} {angle}", last(&of));
+    }
+}
+
 /// P = diag(tan t, tan 0.3t): the angles go on over π/2 at each pole. Where their difference passes π they cross, as
 /// angles up to π, and the order of their columns stays.
 #[test]

@@ -14,9 +14,14 @@ pub enum Branch {
     /// The sign of all columns: q and −q are the same attitude.
     Sign,
     /// Angles in ascending order, each known up to π: the first + π may stand at the end, or the last − π at the start.
+    ///
+    /// They are followed as the angles φ with tan φ = tan θ / scale: θ and φ are the same at multiples of π/2, and where the
+    /// tangents are large numbers, φ is slow where θ is quick.
     HalfTurns {
-        /// A bound of |d/dt| of their sum.
+        /// A bound of |d/dt| of the sum of φ.
         rate: f64,
+        /// The size of the tangents, > 0.
+        scale: f64,
     },
     /// Three Euler angles. The first and the third are known up to a turn; the second stays within its range, so that it
     /// does not depend on the rows before. At the singular β only α + γ or α − γ is known.
@@ -46,7 +51,7 @@ impl Branch {
     /// The time in which the values surely change by less than half of the way to another choice, if a bound is known. Points
     /// that are further apart may lose half turns.
     pub fn longest_gap(self) -> Option<f64> {
-        let Branch::HalfTurns { rate } = self else { return None };
+        let Branch::HalfTurns { rate, .. } = self else { return None };
         (rate > 0.0 && rate.is_finite()).then(|| 0.9 * FRAC_PI_2 / rate)
     }
 
@@ -56,7 +61,10 @@ impl Branch {
         match self {
             Branch::Single => false,
             Branch::Sign => pairs().map(|(a, b)| a * b).sum::<f64>() < 0.9,
-            Branch::HalfTurns { .. } => pairs().map(|(a, b)| (a - b).abs()).sum::<f64>() > 0.3,
+            Branch::HalfTurns { scale, .. } => {
+                let far = |(a, b): (&f64, &f64)| (slowed(*a, scale) - slowed(*b, scale)).abs();
+                pairs().map(far).sum::<f64>() > 0.3
+            }
             Branch::Euler { .. } => pairs().any(|(a, b)| (a - b).abs() > 1.0),
         }
     }
@@ -71,9 +79,10 @@ impl Branch {
                     values.iter_mut().for_each(|x| *x = -*x);
                 }
             }
-            Branch::HalfTurns { .. } => {
+            Branch::HalfTurns { scale, .. } => {
                 // Each angle that goes from one end to the other changes the sum by π.
-                let sum: f64 = before.iter().zip(&*values).map(|(a, b)| a - b).sum();
+                let pairs = before.iter().zip(&*values);
+                let sum: f64 = pairs.map(|(a, b)| slowed(*a, scale) - slowed(*b, scale)).sum();
                 let moved = (sum / PI).round();
                 if !moved.is_finite() || values.is_empty() {
                     return;
@@ -105,6 +114,13 @@ impl Branch {
             }
         }
     }
+}
+
+/// φ with tan φ = tan θ / scale, in the same quarter turn.
+fn slowed(theta: f64, scale: f64) -> f64 {
+    let half_turns = PI * (theta / PI).round();
+    let (sin, cos) = (theta - half_turns).sin_cos();
+    half_turns + sin.atan2(scale * cos)
 }
 
 /// The most known points of a step.
@@ -388,7 +404,7 @@ impl Branches {
 mod tests {
     use super::*;
 
-    const HALF_TURNS: Branch = Branch::HalfTurns { rate: 1.0 };
+    const HALF_TURNS: Branch = Branch::HalfTurns { rate: 1.0, scale: 1.0 };
 
     #[test]
     fn angles_go_on_over_a_half_turn() {
