@@ -49,6 +49,8 @@ pub fn least_rtol<S: Real>() -> f64 {
 
 /// A part that a step moves by less than its size over this number has a smaller tolerance.
 const REACH: f64 = 10.0;
+/// The same where the tolerance is that of the whole part, however short the step is.
+const WHOLE: f64 = 1e300;
 
 /// The tolerance of a part of a point.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,6 +58,8 @@ pub struct PartTolerance {
     rtol: f64,
     atol: f64,
     components: Vec<f64>,
+    /// The error of a step is relative to the part, or to so many times the length that the step moves it.
+    reach: f64,
 }
 
 /// Is this a tolerance?
@@ -76,7 +80,7 @@ impl PartTolerance {
         if rtol == 0.0 && atol == 0.0 {
             return Err(Error::out_of_range("rtol", rtol, "> 0 when atol is 0"));
         }
-        Ok(PartTolerance { rtol, atol, components: Vec::new() })
+        Ok(PartTolerance { rtol, atol, components: Vec::new(), reach: REACH })
     }
 
     /// One rtol, and an atol for each component of a vector.
@@ -141,7 +145,7 @@ impl PartTolerance {
         if self.components.len() > 1 {
             return S::lit(f64::INFINITY);
         }
-        let relative_to = smaller(size, S::lit(REACH) * moved);
+        let relative_to = smaller(size, S::lit(self.reach) * moved);
         let rounding = S::lit(self.rtol.min(4.0 * S::EPSILON)) * size;
         let scale = larger(S::lit(self.rtol) * relative_to, rounding);
         ratio(error, S::lit(self.atol) + scale)
@@ -185,6 +189,11 @@ pub struct Tolerance {
 }
 
 impl Tolerance {
+    /// Makes errors of steps relative to the whole of a part, however short the steps are, or takes that back.
+    pub(crate) fn weigh_whole(&mut self, whole: bool) {
+        self.parts.iter_mut().for_each(|part| part.reach = if whole { WHOLE } else { REACH });
+    }
+
     /// One rtol and one atol for all parts.
     ///
     /// # Errors
@@ -288,7 +297,7 @@ pub struct Scales<'a> {
 
 /// rtol = 1 and atol = 0.
 static RELATIVE: [PartTolerance; 1] =
-    [PartTolerance { rtol: 1.0, atol: 0.0, components: Vec::new() }];
+    [PartTolerance { rtol: 1.0, atol: 0.0, components: Vec::new(), reach: REACH }];
 
 impl<'a> Scales<'a> {
     /// rtol = 1 and atol = 0 for each part: an error ratio is then a relative size.

@@ -160,6 +160,12 @@ pub trait Action<G: LieGroup>: Send + Sync {
         None
     }
 
+    /// The size that a residual of p is relative to ([`LieGroup::residual_size`]): 1 where rounding does not grow with p.
+    #[inline]
+    fn residual_size(&self, _group: &G, _p: &Self::Point) -> G::Scalar {
+        G::Scalar::lit(1.0)
+    }
+
     /// Moves p back to M and to the orbit of `from`, the start of the run.
     ///
     /// Example: |x| of a vector under SO(3) is constant. The driver calls this; the default is

@@ -81,6 +81,9 @@ where
         self.0.generate(&group.0, &v.0, &y.0, &mut dy.0, &mut work.0);
         self.1.generate(&group.1, &v.1, &y.1, &mut dy.1, &mut work.1);
     }
+    fn residual_size(&self, group: &Product<A, B>, p: &Self::Point) -> A::Scalar {
+        larger(self.0.residual_size(&group.0, &p.0), self.1.residual_size(&group.1, &p.1))
+    }
     fn restore(
         &self,
         group: &Product<A, B>,
@@ -167,6 +170,10 @@ impl<G: LieGroup, L: Action<G>> Action<Power<G>> for Each<L> {
         for ((v, y), dy) in v.iter().zip(y).zip(dy) {
             self.0.generate(group.group(), v, y, dy, work);
         }
+    }
+    fn residual_size(&self, group: &Power<G>, p: &Self::Point) -> G::Scalar {
+        let each = p.iter().map(|p| self.0.residual_size(group.group(), p));
+        each.fold(crate::scalar::Real::lit(1.0), larger)
     }
     fn restore(
         &self,

@@ -29,6 +29,9 @@ macro_rules! on_the_group {
         ) -> G::Scalar {
             group.error_ratio(e, g, self.is_right(), scales)
         }
+        fn residual_size(&self, group: &G, g: &G::Elem) -> G::Scalar {
+            group.residual_size(g)
+        }
     };
 }
 

@@ -82,6 +82,14 @@ pub trait LieAlgebra: Send + Sync {
         Ok(())
     }
 
+    /// Checks the sizes of u alone, where its storage has any.
+    ///
+    /// # Errors
+    /// [`Error::Shape`] with the name `arg`.
+    fn check_shape(&self, _arg: &'static str, _u: &Self::Alg) -> Result<(), Error> {
+        Ok(())
+    }
+
     /// True if the storage of u can hold more than 𝔤, as n×n matrices do for 𝔰𝔬(n). The driver then looks at f during a run.
     #[inline]
     fn holds_more(&self) -> bool {
@@ -192,6 +200,10 @@ pub trait LieGroup: LieAlgebra {
         true
     }
 
+    /// The size that a residual of g is relative to: 1 on a compact group, max(1, ‖g‖²) where elements may be large.
+    fn residual_size(&self, _g: &Self::Elem) -> Self::Scalar {
+        Self::Scalar::lit(1.0)
+    }
     /// Corrects a g that rounding errors moved off G. Returns the residual ‖M⁻¹gᵀMg − 𝟙‖ before the correction.
     ///
     /// The correction is Newton–Schulz in residual form. For M symmetric or skew it is g ← g + g(𝟙 − M⁻¹gᵀMg)/2.

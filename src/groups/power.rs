@@ -115,6 +115,10 @@ impl<G: LieAlgebra> LieAlgebra for Power<G> {
     fn is_finite(&self, u: &Self::Alg) -> bool {
         u.iter().all(|u| self.group.is_finite(u))
     }
+    fn check_shape(&self, arg: &'static str, u: &Self::Alg) -> Result<(), Error> {
+        self.check_copies(arg, u)?;
+        u.iter().try_for_each(|u| self.group.check_shape(arg, u))
+    }
     fn check(&self, arg: &'static str, u: &Self::Alg) -> Result<(), Error> {
         self.check_copies(arg, u)?;
         u.iter().try_for_each(|u| self.group.check(arg, u))
@@ -202,6 +206,9 @@ impl<G: LieGroup> LieGroup for Power<G> {
     }
     fn assign_vector(&self, x: &Self::Vector, y: &mut Self::Vector) {
         x.iter().zip(y).for_each(|(x, y)| self.group.assign_vector(x, y));
+    }
+    fn residual_size(&self, g: &Self::Elem) -> G::Scalar {
+        g.iter().map(|g| self.group.residual_size(g)).fold(G::Scalar::lit(1.0), larger)
     }
     /// Corrects each copy. Returns the largest residual.
     fn correct(&self, g: &mut Self::Elem, [s, t]: [&mut Self::Elem; 2]) -> G::Scalar {

@@ -86,6 +86,10 @@ impl<A: LieAlgebra, B: LieAlgebra<Scalar = A::Scalar>> LieAlgebra for Product<A,
         self.0.check(arg, &u.0)?;
         self.1.check(arg, &u.1)
     }
+    fn check_shape(&self, arg: &'static str, u: &Self::Alg) -> Result<(), Error> {
+        self.0.check_shape(arg, &u.0)?;
+        self.1.check_shape(arg, &u.1)
+    }
     #[inline]
     fn holds_more(&self) -> bool {
         self.0.holds_more() || self.1.holds_more()
@@ -176,6 +180,9 @@ impl<A: LieGroup, B: LieGroup<Scalar = A::Scalar>> LieGroup for Product<A, B> {
     fn correct(&self, g: &mut Self::Elem, [s, t]: [&mut Self::Elem; 2]) -> A::Scalar {
         let first = self.0.correct(&mut g.0, [&mut s.0, &mut t.0]);
         larger(first, self.1.correct(&mut g.1, [&mut s.1, &mut t.1]))
+    }
+    fn residual_size(&self, g: &Self::Elem) -> A::Scalar {
+        larger(self.0.residual_size(&g.0), self.1.residual_size(&g.1))
     }
     /// Corrects each part. Returns the larger residual.
     fn correct_vector(&self, from: &Self::Vector, x: &mut Self::Vector) -> Option<A::Scalar> {

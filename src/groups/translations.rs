@@ -65,6 +65,12 @@ impl<V: LinearSpace> LieAlgebra for Translations<V> {
     fn is_finite(&self, u: &V) -> bool {
         u.is_finite()
     }
+    fn check(&self, arg: &'static str, u: &V) -> Result<(), Error> {
+        u.check_sizes(arg, &self.zero)
+    }
+    fn check_shape(&self, arg: &'static str, u: &V) -> Result<(), Error> {
+        u.check_sizes(arg, &self.zero)
+    }
 }
 
 impl<V: LinearSpace> LieGroup for Translations<V> {
@@ -102,6 +108,7 @@ impl<V: LinearSpace> LieGroup for Translations<V> {
     }
     #[inline]
     fn check_elem(&self, g: &V) -> Result<(), Error> {
+        g.check_sizes("y", &self.zero)?;
         match g.is_finite() {
             true => Ok(()),
             false => Err(Error::out_of_range("y", f64::NAN, "finite numbers")),

@@ -138,6 +138,8 @@ pub trait DexpGroup: LieGroup {
 /// # Ok::<(), lieflow::Error>(())
 /// ```
 pub fn dexp<G: DexpGroup>(group: &G, u: &G::Alg, v: &G::Alg) -> Result<G::Alg, Error> {
+    group.check_shape("u", u)?;
+    group.check_shape("v", v)?;
     group.dexp_of(u, v)
 }
 

@@ -133,8 +133,9 @@ pub trait CoordinateMap<G: LieGroup>: Send + Sync {
     /// Ψ(u) on its own, with fresh storage.
     ///
     /// # Errors
-    /// As [`at`](Self::at) and [`psi`](Self::psi).
+    /// As [`LieAlgebra::check_shape`](crate::LieAlgebra::check_shape), [`at`](Self::at) and [`psi`](Self::psi).
     fn eval(&self, group: &G, u: &G::Alg) -> Result<G::Elem, Error> {
+        group.check_shape("u", u)?;
         let (mut at, mut g) = (self.at(group)?, group.identity());
         self.psi(group, u, &mut at, &mut g)?;
         Ok(g)
@@ -145,6 +146,8 @@ pub trait CoordinateMap<G: LieGroup>: Send + Sync {
     /// # Errors
     /// As [`eval`](Self::eval) and [`dpsi_inv`](Self::dpsi_inv).
     fn eval_dpsi_inv(&self, group: &G, u: &G::Alg, v: &G::Alg) -> Result<G::Alg, Error> {
+        group.check_shape("u", u)?;
+        group.check_shape("v", v)?;
         let (mut at, mut g, mut v) = (self.at(group)?, group.identity(), v.clone());
         self.psi(group, u, &mut at, &mut g)?;
         self.dpsi_inv(group, u, &mut at, &mut v)?;

@@ -316,11 +316,7 @@ where
         let facts = self.inner.facts(problem);
         match facts.error_order {
             Some(_) => facts,
-            None => Facts {
-                error_order: Some(facts.order),
-                step_with_error: facts.step.times(3),
-                ..facts
-            },
+            None => facts.doubled_for_error(),
         }
     }
     fn iterations(&self, work: &Self::Work) -> u64 {

@@ -20,6 +20,7 @@ use super::extension::{Extension, OneIncrement, of_increment};
 use super::implicit_rkmk::OddMap;
 use super::newton::Progress;
 use super::{Facts, Method, Step, Symmetric, Within};
+use crate::actions::Action;
 use crate::chart::ChartStore;
 use crate::error::{Error, StepError};
 use crate::groups::LieAlgebra;
@@ -27,6 +28,7 @@ use crate::maps::CoordinateMap;
 use crate::problems::{AlgOf, LiePoisson, PointOf, ScalarOf};
 use crate::scalar::Real;
 use crate::space::LinearSpace;
+use crate::tolerance::Scales;
 
 /// The energy–Casimir method with the map Ψ: exp, cay, or another map with Ψ(−u) = Ψ(u)⁻¹.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -108,8 +110,12 @@ impl<P: LiePoisson, Psi: CoordinateMap<P::Group> + OddMap> Method<P> for EnergyC
             problem.discrete_gradient(p, y, xi, (m, v), field);
             alg.axpy(h, xi, old);
             let size = lit(1.0) + alg.norm(u);
-            if progress.done("energy-casimir", alg.norm(old) / size)? {
-                break;
+            let change = alg.norm(old) / size;
+            if progress.done("energy-casimir", change)? {
+                let of_parts = problem.action().error_ratio(alg, old, p, &mut Scales::relative());
+                if progress.parts_are_done(change, of_parts / size) {
+                    break;
+                }
             }
         }
         if !y.is_finite() {

@@ -49,6 +49,8 @@ pub struct Facts {
     /// The evaluations of f in [`prepare`](super::Method::prepare), and in each
     /// [`interpolate`](super::Method::interpolate).
     pub dense_evaluations: [Option<u64>; 2],
+    /// True if a step with an error estimate is two halves, each of the cost of `step`. A point within it is a shorter step.
+    pub doubled_for_error: bool,
     /// True if a step stays on M up to rounding. Then the driver corrects the state to M from time to time
     /// ([`Action::restore`](crate::Action::restore)). The state of other methods is not corrected.
     pub stays_on_manifold: bool,
@@ -70,6 +72,7 @@ impl Facts {
             step: unknown,
             step_with_error: unknown,
             dense_evaluations: [Some(0), None],
+            doubled_for_error: false,
             stays_on_manifold: true,
             stages_within: false,
         }
@@ -114,10 +117,20 @@ impl Facts {
     pub(crate) fn doubled(self) -> Self {
         Facts {
             dense_order: self.order,
-            error_order: Some(self.order),
             step: self.step.times(2),
-            step_with_error: self.step.times(3),
             dense_evaluations: [Some(0), self.step.evaluations],
+            doubled_for_error: false,
+            ..self.doubled_for_error()
+        }
+    }
+
+    /// The facts of a method whose steps are doubled where an error is asked for. A point within a doubled step is a shorter
+    /// step.
+    pub(crate) fn doubled_for_error(self) -> Self {
+        Facts {
+            error_order: Some(self.order),
+            step_with_error: self.step.times(3),
+            doubled_for_error: true,
             ..self
         }
     }

@@ -19,7 +19,8 @@ use crate::error::{Error, StepError};
 use crate::problems::FieldStore;
 use crate::problems::{Ambient, PointOf, ScalarOf};
 use crate::scalar::Real;
-use crate::space::{LinearSpace, Metric};
+use crate::space::{Gap, LinearSpace, Metric};
+use crate::tolerance::Scales;
 
 /// An implicit Runge–Kutta tableau with S stages; every `a[i][j]` is used.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -180,8 +181,17 @@ impl<P: Ambient, const S: usize> Method<P> for Gauss<S> {
                 problem.field(time(i), z, &mut k[i], field);
                 change += k[i].distance(old);
             }
-            if progress.done(tab.name, h.abs() * change / scale)? {
-                break;
+            let change = h.abs() * change / scale;
+            if progress.done(tab.name, change)? {
+                if PointOf::<P>::IS_ONE_PART {
+                    break;
+                }
+                // The change of the last stage.
+                old.add(lit(-1.0), &k[S - 1]);
+                let of_parts = z.error_ratio(Gap::of(old), &mut Scales::relative());
+                if progress.parts_are_done(change, h.abs() * of_parts) {
+                    break;
+                }
             }
         }
         z.set_sum(y, h, &tab.b, k);

@@ -27,6 +27,7 @@ use crate::groups::LieAlgebra;
 use crate::maps::{Cay, CoordinateMap, Exp, ExpOrCay};
 use crate::problems::{AlgOf, PointOf, Problem, ScalarOf};
 use crate::scalar::Real;
+use crate::tolerance::Scales;
 
 /// Implicit RKMK with its chart at the start of the step.
 #[derive(Clone, Copy, Debug)]
@@ -140,8 +141,15 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> RkmkGaussWork<P, 
                 change += h.abs() * alg.norm(old);
                 size += h.abs() * alg.norm(&k[i]);
             }
-            if progress.done(name, change / size)? {
-                break;
+            let change = change / size;
+            if progress.done(name, change)? {
+                // The change of the last stage.
+                alg.set_zero(u);
+                alg.axpy(h, old, u);
+                let of_parts = problem.action().error_ratio(alg, u, p, &mut Scales::relative());
+                if progress.parts_are_done(change, of_parts / size) {
+                    break;
+                }
             }
         }
         if centred {

@@ -73,6 +73,7 @@ fn log10_above<S: Real>(x: S) -> i32 {
 /// It has converged when a change is at rounding, or when the changes near rounding no longer shrink.
 pub(super) struct Progress<'a, S> {
     last: S,
+    last_of_parts: S,
     iterations: u32,
     total: &'a mut u64,
 }
@@ -81,7 +82,8 @@ impl<'a, S: Real> Progress<'a, S> {
     /// Begins an iteration. Its iterations are added to `total`.
     #[inline]
     pub(super) fn new(total: &'a mut u64) -> Self {
-        Progress { last: S::lit(f64::INFINITY), iterations: 0, total }
+        let none = S::lit(f64::INFINITY);
+        Progress { last: none, last_of_parts: none, iterations: 0, total }
     }
 
     /// True if the iteration is done after a change of this size, relative to the size of the solution.
@@ -107,6 +109,19 @@ impl<'a, S: Real> Progress<'a, S> {
         }
         self.last = change;
         Ok(false)
+    }
+
+    /// True if an iteration that is done is done for each part of the solution, too. `change` is the last one, and
+    /// `of_parts` the largest that a part has relative to its own size. A part that is small beside the others converges
+    /// later than they do.
+    #[inline]
+    pub(super) fn parts_are_done(&mut self, change: S, of_parts: S) -> bool {
+        let shrinks = (of_parts / self.last_of_parts).all_below(0.9);
+        self.last_of_parts = of_parts;
+        !shrinks
+            || (of_parts / change).all_below(1.01)
+            || of_parts.all_below(0.25 * S::EPSILON)
+            || self.iterations + 1 >= FIXED_POINT_MAX
     }
 }
 

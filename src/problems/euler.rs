@@ -323,6 +323,9 @@ where
         RightTranslation.generate(group, v, g, dg, right);
         Coadjoint.generate(group, v, m, dm, coadjoint);
     }
+    fn residual_size(&self, group: &G, p: &Self::Point) -> G::Scalar {
+        group.residual_size(&p.0)
+    }
     /// Corrects g to G.
     fn restore(&self, group: &G, p: &mut Self::Point, work: &mut Self::Work) -> Option<G::Scalar> {
         RightTranslation.restore(group, &mut p.0, &mut work.0)

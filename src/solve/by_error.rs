@@ -93,6 +93,7 @@ impl Timeline {
     ) -> Result<(), RunError> {
         let Pacer::ByError(chooser) = &self.pacer else { return Ok(()) };
         let StepControl { min_step, max_steps, first_step, .. } = chooser.control;
+        run.points().weigh_whole(chooser.noise.per_size > 0.0);
         let mut h = match chooser.h.or(first_step) {
             _ if self.is_exact() => self.exact_step(run.points(), stop),
             Some(h) => h,
@@ -296,8 +297,12 @@ impl Timeline {
         // Rates: f itself, and the root of its derivative.
         let rate = d1.max((change / h0).sqrt());
         let h1 = controller.first_step(rate, tolerance);
+        // From rest, h0 is a guess. What it allows depends on the tolerance, so that runs by two tolerances differ: f may grow
+        // like a root of t, where no estimate sees the error of the first step.
+        let most =
+            if still { (5e5 * tolerance).powf(1.0 / controller.k()).clamp(0.1, 3.0) } else { 1.0 };
         match h1.is_finite() {
-            true => h1.min(100.0 * h0),
+            true => h1.min(100.0 * most * h0),
             false => h0,
         }
     }

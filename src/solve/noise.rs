@@ -2,7 +2,8 @@
 //!
 //! The time of a stage is rounded, so f(t, y) has an error of about ε/2·|t|·|∂f/∂t|, and the estimated error of a step has a
 //! part that is a multiple of h times that. Where this part is more than the tolerance, the tolerance cannot be met: smaller
-//! steps are more, and their errors add up to the same. Such steps are chosen by the rest of their error.
+//! steps are more, and their errors add up to the same. Such steps are chosen by the rest of their error. It is relative to
+//! the whole of a part: relative to the length of a step, the rounding would not fall with the step size.
 
 use super::control::GOAL;
 use super::points::AnyPoints;
@@ -17,6 +18,8 @@ pub(super) struct Noise {
     pub(super) per_size: f64,
     /// The number of accepted steps at which it is computed again.
     pub(super) next: u64,
+    /// The step size at which it was computed.
+    size: f64,
 }
 
 impl Noise {
@@ -72,7 +75,7 @@ impl Timeline {
     /// True if the error of a step is found to be noise that was not known. Then the end of the attempt is lost.
     pub(super) fn is_noise(&mut self, points: &mut dyn AnyPoints, ratio: f64, size: f64) -> bool {
         let Pacer::ByError(Chooser { noise, .. }) = &self.pacer else { return false };
-        let is_new = noise.next == self.stats.accepted + noise.every();
+        let is_new = noise.next == self.stats.accepted + noise.every() && 4.0 * size > noise.size;
         if is_new || self.beyond_noise(ratio, size) <= 1.0 {
             return false;
         }
@@ -82,9 +85,14 @@ impl Timeline {
 
     /// Computes the noise of steps of this size, where there may be any.
     fn see_noise(&mut self, points: &mut dyn AnyPoints, size: f64) {
-        let per_size = if self.may_be_noisy(size) { self.noise_of(points, size) } else { 0.0 };
+        let mut per_size = 0.0;
+        if self.may_be_noisy(size) {
+            points.weigh_whole(true);
+            per_size = self.noise_of(points, size);
+        }
+        points.weigh_whole(per_size > 0.0);
         let Pacer::ByError(Chooser { noise, .. }) = &mut self.pacer else { return };
-        *noise = Noise { per_size, next: self.stats.accepted };
+        *noise = Noise { per_size, next: self.stats.accepted, size };
         noise.next += noise.every();
     }
 
@@ -93,30 +101,45 @@ impl Timeline {
         let Pacer::ByError(Chooser { controller, control, .. }) = &self.pacer else { return 0.0 };
         let rule = control.tolerance.rule();
         // Less does not keep a step from growing.
-        let least = controller.kept[0] / size;
+        let least = controller.kept[0];
         let (t, forward) = (self.t, self.t1 - self.t);
         let most = Noise::MOST * points.noise_of_time(t, size.copysign(forward)) / size;
         self.stats.evaluations = self.stats.evaluations.map(|n| n + 2);
-        if most.is_nan() || most <= least {
+        if most.is_nan() || most == 0.0 {
             return 0.0;
         }
         let mut seen = 0.0_f64;
         for part in Noise::PARTS {
-            let end = t + (part * size).copysign(forward);
-            let trial = Step { n: self.stats.accepted, t, h: end - t };
-            if end == t {
-                return 0.0;
-            }
-            self.attempted(1);
-            let Ok(ratio) = points.attempt(trial, end, &Streak::ONE).ratio else { return 0.0 };
+            let Some((h, ratio)) = self.ratio_of_part(points, part * size) else { return 0.0 };
             // By the length of the step, the parts have the same ratio as the whole.
             let of = match rule {
-                Rule::PerStep => trial.h.abs(),
+                Rule::PerStep => h,
                 Rule::PerLength => size,
             };
             seen = seen.max(ratio / of);
         }
         let noise = (Noise::VARIES * seen).min(most);
-        if noise > least { noise } else { 0.0 }
+        if noise * size > least {
+            return noise;
+        }
+        // Relative to the length of a short step, it does not fall with the step size.
+        points.weigh_whole(false);
+        let short = self.ratio_of_part(points, Noise::PARTS[0] * size);
+        match short {
+            Some((h, ratio)) if ratio > least && ratio > 2.0 * seen * h => noise,
+            _ => 0.0,
+        }
+    }
+
+    /// The size of a step that is a part of another one, and its ratio; `None` where there is no such step.
+    fn ratio_of_part(&mut self, points: &mut dyn AnyPoints, size: f64) -> Option<(f64, f64)> {
+        let end = self.t + size.copysign(self.t1 - self.t);
+        let trial = Step { n: self.stats.accepted, t: self.t, h: end - self.t };
+        if end == self.t {
+            return None;
+        }
+        self.attempted(1);
+        let ratio = points.attempt(trial, end, &Streak::ONE).ratio.ok()?;
+        Some((trial.h.abs(), ratio))
     }
 }

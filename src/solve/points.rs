@@ -64,6 +64,8 @@ pub(super) trait AnyPoints {
     fn change_of_rate(&mut self, t: f64) -> f64;
     /// h times the error of f that the rounding of t makes in a step of size h from (t, y), in units of the tolerance.
     fn noise_of_time(&mut self, t: f64, h: f64) -> f64;
+    /// Makes errors relative to the whole of a part, however short the steps are, or takes that back.
+    fn weigh_whole(&mut self, whole: bool);
     /// A power of two above the rate at which f(t, y) turns y, or 0 if that is not finite. It is computed for steps of one
     /// size, too.
     fn turn_rate(&mut self, t: f64) -> f64;
@@ -195,23 +197,24 @@ fn check_on_manifold<P: Problem>(
     y: &mut PointOf<P>,
     work: &mut <P::Action as Action<P::Group>>::Work,
 ) -> Result<bool, Error> {
-    let square = square_of_size::<P>(y);
-    let Some(residual) = problem.action().restore(problem.group(), y, work) else {
+    let (group, action) = (problem.group(), problem.action());
+    let size = action.residual_size(group, y);
+    let Some(residual) = action.restore(group, y, work) else {
         return Ok(false);
     };
-    let relative = residual / square;
-    check_residual(problem, relative)?;
-    Ok(!relative.all_below(ON_M * ScalarOf::<P>::EPSILON))
+    let residual = residual / size;
+    check_residual(problem, residual)?;
+    Ok(!residual.all_below(ON_M * ScalarOf::<P>::EPSILON))
 }
 
 /// Refuses the relative residual of a y that is farther from M than numbers with seven digits are.
-fn check_residual<P: Problem>(problem: &P, relative: ScalarOf<P>) -> Result<(), Error> {
-    match relative.all_below(OFF_M_MAX) {
+fn check_residual<P: Problem>(problem: &P, residual: ScalarOf<P>) -> Result<(), Error> {
+    match residual.all_below(OFF_M_MAX) {
         true => Ok(()),
         false => Err(Error::NotOnGroup {
             arg: "y",
             group: problem.group().name(),
-            residual: power_of_two_above(relative),
+            residual: power_of_two_above(residual),
             tolerance: OFF_M_MAX,
         }),
     }
@@ -463,6 +466,11 @@ impl<P: Problem, M: Method<P>> AnyPoints for Points<'_, P, M> {
             (estimator.ratio)(problem, f, y, tolerance, length)
         })
     }
+    fn weigh_whole(&mut self, whole: bool) {
+        if let Some(rates) = &mut self.rates {
+            rates.tolerance.weigh_whole(whole);
+        }
+    }
     fn turn_rate(&mut self, t: f64) -> f64 {
         let Points { problem, y, v, field, .. } = self;
         let problem = &**problem;
@@ -486,7 +494,10 @@ impl<P: Problem, M: Method<P>> AnyPoints for Points<'_, P, M> {
         stats.saw(residual);
         cadence.saw(residual);
         match is_checked {
-            true => check_residual(problem, residual / square_of_size::<P>(y)),
+            true => {
+                let size = problem.action().residual_size(problem.group(), y);
+                check_residual(problem, residual / size)
+            }
             false => Ok(()),
         }
     }

@@ -445,7 +445,7 @@ impl Timeline {
             return Ok(Place::Start);
         }
         self.prepare(points).map_err(|source| self.no_point(source))?;
-        self.looked_within(self.facts.dense_evaluations[1]);
+        self.looked_within(self.dense_evaluations()[1]);
         Ok(Place::Within(((t - start) / h).clamp(0.0, 1.0)))
     }
 
@@ -464,6 +464,16 @@ impl Timeline {
             Pacer::ByError(_) => self.facts.step_with_error.evaluations,
         });
         Ok(Place::Shorter(t - self.last.t))
+    }
+
+    /// The evaluations that prepare the dense output of a step, and those of a point.
+    fn dense_evaluations(&self) -> [Option<u64>; 2] {
+        match &self.pacer {
+            Pacer::ByError(_) if self.facts.doubled_for_error => {
+                [Some(0), self.facts.step.evaluations]
+            }
+            _ => self.facts.dense_evaluations,
+        }
     }
 
     /// Counts a point within a step.
@@ -496,7 +506,7 @@ impl Timeline {
         let evaluations = match self.looked_at {
             // They are counted already, without those that were not needed.
             Looked::Restored => Some(points.reused().wrapping_sub(reused)),
-            _ => self.facts.dense_evaluations[0],
+            _ => self.dense_evaluations()[0],
         };
         self.stats.evaluations = plus(self.stats.evaluations, evaluations);
         prepared?;

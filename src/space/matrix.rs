@@ -4,12 +4,14 @@ use faer::Mat;
 
 use super::{Gap, GivenBy, LinearSpace, Metric, Numbers};
 use crate::dense;
+use crate::error::Error;
 use crate::scalar::{Ops, tally};
 use crate::tolerance::PartTolerance;
 use crate::tolerance::Scales;
 
 impl Metric for Mat<f64> {
     type Scalar = f64;
+    const IS_ONE_PART: bool = true;
     fn assign(&mut self, x: &Self) {
         self.copy_from(x);
     }
@@ -62,6 +64,14 @@ fn entries(m: &Mat<f64>) -> impl Iterator<Item = f64> {
 }
 
 impl LinearSpace for Mat<f64> {
+    fn check_sizes(&self, arg: &'static str, like: &Self) -> Result<(), Error> {
+        let (rows, cols) = (self.nrows(), self.ncols());
+        let (expected_rows, expected_cols) = (like.nrows(), like.ncols());
+        match (rows, cols) == (expected_rows, expected_cols) {
+            true => Ok(()),
+            false => Err(Error::Shape { arg, rows, cols, expected_rows, expected_cols }),
+        }
+    }
     fn clear(&mut self) {
         self.fill(0.0);
     }

@@ -25,6 +25,8 @@ pub trait Metric: Send + Sync {
     /// True for a few numbers without an allocation: a copy of them may stay in registers. Methods keep their newest stage
     /// in such a copy.
     const IS_SMALL: bool = false;
+    /// True if the point is one part, which has one tolerance.
+    const IS_ONE_PART: bool = false;
     /// self ← x, into the existing storage.
     fn assign(&mut self, x: &Self);
     /// ‖self‖.
@@ -176,6 +178,13 @@ pub trait LinearSpace: Metric + Clone {
     fn clear(&mut self);
     /// self ← self + a·x.
     fn add(&mut self, a: Self::Scalar, x: &Self);
+    /// Checks that the storage has the sizes of that of `like`, where it has any.
+    ///
+    /// # Errors
+    /// [`Error::Length`] and [`Error::Shape`] with the name `arg`.
+    fn check_sizes(&self, _arg: &'static str, _like: &Self) -> Result<(), Error> {
+        Ok(())
+    }
     /// ⟨self, x⟩, the sum of the products of their numbers.
     fn dot(&self, x: &Self) -> Self::Scalar;
     /// Is every number finite?
@@ -205,6 +214,7 @@ macro_rules! number {
         impl Metric for $t {
             type Scalar = $t;
             const IS_SMALL: bool = true;
+            const IS_ONE_PART: bool = true;
             #[inline]
             fn assign(&mut self, x: &Self) {
                 *self = *x;
@@ -250,6 +260,7 @@ macro_rules! small {
         impl<S: Real> Metric for $t<S> {
             type Scalar = S;
             const IS_SMALL: bool = true;
+            const IS_ONE_PART: bool = true;
             /// Entry by entry, because a vector that is copied whole, or in a loop, goes through memory. Here and below there is
             /// no iterator and no closure: a build of many units without LTO does not put them in line.
             #[inline]
@@ -350,6 +361,7 @@ small! {
 impl Metric for UnitQuaternion<f64> {
     type Scalar = f64;
     const IS_SMALL: bool = true;
+    const IS_ONE_PART: bool = true;
     #[inline]
     fn assign(&mut self, x: &Self) {
         *self = *x;
@@ -421,6 +433,10 @@ impl<A: Metric, B: Metric<Scalar = A::Scalar>> Metric for (A, B) {
 }
 
 impl<A: LinearSpace, B: LinearSpace<Scalar = A::Scalar>> LinearSpace for (A, B) {
+    fn check_sizes(&self, arg: &'static str, like: &Self) -> Result<(), Error> {
+        self.0.check_sizes(arg, &like.0)?;
+        self.1.check_sizes(arg, &like.1)
+    }
     #[inline]
     fn clear(&mut self) {
         self.0.clear();
@@ -525,6 +541,13 @@ impl<M: Metric> Metric for Box<[M]> {
 }
 
 impl<A: LinearSpace> LinearSpace for Box<[A]> {
+    fn check_sizes(&self, arg: &'static str, like: &Self) -> Result<(), Error> {
+        if self.len() != like.len() {
+            let (found, expected) = (self.len(), like.len().to_string());
+            return Err(Error::Length { arg: arg.into(), found, expected });
+        }
+        self.iter().zip(like).try_for_each(|(x, like)| x.check_sizes(arg, like))
+    }
     #[inline]
     fn clear(&mut self) {
         self.iter_mut().for_each(A::clear);

@@ -2,12 +2,13 @@
 
 use core::f64::consts::TAU;
 
-use lieflow::actions::LeftTranslation;
+use lieflow::actions::{LeftTranslation, Linear};
 use lieflow::groups::So3;
 use lieflow::maps::Exp;
+use lieflow::methods::commutator_free::{CF4, CF43};
 use lieflow::methods::magnus::Magnus4;
 use lieflow::methods::tableau::{DOP853, DOPRI5};
-use lieflow::methods::{Doubling, Rk, Rkmk};
+use lieflow::methods::{CommutatorFree, Doubling, Rk, Rkmk};
 use lieflow::nalgebra::{Matrix3, Vector3};
 use lieflow::problems::{Flow, LinearFlow};
 use lieflow::{Solve, Stats};
@@ -110,6 +111,39 @@ fn the_rounding_of_time_makes_no_steps_small() {
             )*};
         }
         check![Rkmk::new(DOPRI5, Exp), Rkmk::new(DOP853, Exp), Rk(DOPRI5), Doubling(Magnus4)];
+    }
+}
+
+/// Errors that are distances of points count relative to the length of a short step. There the part that is rounding of t
+/// does not fall with the step size. A vector in a field that turns.
+#[test]
+fn errors_of_points_at_times_of_a_clock() {
+    let t0 = 1.7e9;
+    let field = |t0: f64, w: f64| {
+        let f = move |t: f64, v: &mut Vector3<f64>| {
+            let (sin, cos) = (w * (t - t0)).sin_cos();
+            *v = Vector3::new(cos, sin, 0.5);
+        };
+        Flow::of_time(So3::<f64>::new(), Linear, f)
+    };
+    for (w, rtol) in [(1.0, 1e-9), (10.0, 1e-9), (100.0, 1e-9), (100.0, 1e-6)] {
+        let (near_0, fine) = (field(0.0, w), Rkmk::new(DOP853, Exp));
+        let reference = Solve::new(&near_0, &fine, [0.0, 10.0]);
+        let exact = reference.tolerances(1e-13, 1e-13).run(Vector3::x()).expect("a run").y;
+        let flow = field(t0, w);
+        macro_rules! check {
+            ($($method:expr),*) => {$(
+                let method = $method;
+                let solve = Solve::new(&flow, &method, [t0, t0 + 10.0]).tolerances(rtol, 0.0);
+                let run = solve.max_steps(100_000).run(Vector3::x());
+                let run = run.unwrap_or_else(|e| panic!("{} {w} {rtol:e}: {e}", stringify!($method)));
+                let error = (run.y - exact).norm();
+                // f changes by wεt₀ in a rounding of t.
+                let allowed = 300.0 * rtol + 10.0 * w * f64::EPSILON * t0;
+                assert!(error < allowed, "{} {w} {rtol:e}: {error:e}", stringify!($method));
+            )*};
+        }
+        check![Rk(DOPRI5), Rk(DOP853), CommutatorFree(CF43), Doubling(CommutatorFree(CF4))];
     }
 }
 

@@ -13,6 +13,7 @@ mod roots;
 mod scipy;
 mod scipy_events;
 mod series;
+mod small_parts;
 mod step_by_step;
 mod streaks;
 #[path = "../support/mod.rs"]

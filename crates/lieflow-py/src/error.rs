@@ -41,7 +41,10 @@ pub(crate) fn words(name: &str, error: &Error) -> (String, String, String) {
     let with_times = |arg: &str| match arg.strip_prefix("times") {
         Some(rest) if name == "solve_ivp" => format!("t_eval{rest}"),
         Some(rest) => format!("{name}{rest}"),
-        None => of(arg).to_owned(),
+        None => match arg.strip_prefix("y[") {
+            Some(rest) => format!("y0[{rest}"),
+            None => of(arg).to_owned(),
+        },
     };
     match error {
         Error::OutOfRange { arg, value, expected } => {

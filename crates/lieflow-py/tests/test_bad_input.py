@@ -277,3 +277,40 @@ def test_the_density_matrix_of_a_state_is_taken():
             lf.Riccati(c=a, b=a, p=a)
     with pytest.raises(lf.ArgumentError, match="antisymmetric"):
         lf.DensityMatrix(hamiltonian=np.eye(2), density=np.array([[0.5, 0.1j], [0.1j, 0.5]]))
+
+
+@pytest.mark.parametrize("far", [1.0, 3e3, 7e6])
+def test_a_rotation_that_is_none_is_refused_beside_a_large_position(far):
+    pose = np.eye(4)
+    pose[0, 3] = far
+    turn = {"group": "SE(3)", "frame": "body"}
+    lf.solve_ivp(lambda t, y: [0, 0, 1, 0, 0, 0], (0, 1), pose, **turn)
+    for wrong in (2 * np.eye(3), np.zeros((3, 3)), np.diag([1.0, 1, -1])):
+        pose[:3, :3] = wrong
+        with pytest.raises(ValueError, match="y0"):
+            lf.solve_ivp(lambda t, y: [0, 0, 1, 0, 0, 0], (0, 1), pose, **turn)
+    parts = lf.Parts(R="rotation", x="numbers 3")
+    start = {"R": 2 * np.eye(3), "x": [far, 0, 0]}
+    with pytest.raises(ValueError, match="y0"):
+        lf.solve_ivp(lambda t, y: {"R": [0, 0, 1.0], "x": [0, 0, 0]}, (0, 1), start, group=parts, frame="body")
+
+
+def test_a_transposed_pose_is_refused():
+    pose = np.eye(4)
+    pose[:3, 3] = 1, 2, 3
+    def f(t, y):
+        return np.zeros(6)
+
+    with pytest.raises(ValueError, match=r"y0\[3, 0\]"):
+        lf.solve_ivp(f, (0, 1), pose.T, group="SE(3)", frame="space")
+    run = lf.Integrator(f, None, (0, 1), pose, group="SE(3)", frame="space")
+    with pytest.raises((ValueError, RuntimeError), match="last row"):
+        run.y = pose.T
+    assert (run.y == pose).all()
+
+
+def test_the_error_of_a_first_step_from_rest_is_seen():
+    power, rtol = 0.2, 1e-6
+    run = lf.solve_ivp(lambda t, y: [0, 0, t**power], (0, 1), np.eye(3), group="SO(3)", frame="space", rtol=rtol, atol=rtol)
+    angle = np.arctan2(run.y_end[1, 0], run.y_end[0, 0])
+    assert abs(angle - 1 / (power + 1)) < 20 * run.estimate_error().y

@@ -90,6 +90,14 @@ impl Cosquare {
 }
 
 impl MatrixGroup {
+    /// [`LieGroup::residual_size`](crate::LieGroup::residual_size) of the element with this matrix.
+    pub fn residual_size_of(&self, g: &Mat<f64>) -> f64 {
+        match self.form {
+            Form::Identity => 1.0,
+            _ => norm_frobenius(g).powi(2).max(1.0),
+        }
+    }
+
     /// [`LieGroup::correct`](crate::LieGroup::correct).
     pub(super) fn newton_schulz(&self, g: &mut GroupMatrix, [a, b]: [&mut GroupMatrix; 2]) -> f64 {
         let mut first = None;

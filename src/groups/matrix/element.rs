@@ -56,6 +56,7 @@ macro_rules! matrix_element {
         }
         impl Metric for $name {
             type Scalar = f64;
+            const IS_ONE_PART: bool = true;
             fn assign(&mut self, x: &Self) {
                 self.0.assign(x);
             }

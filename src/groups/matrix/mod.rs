@@ -363,6 +363,9 @@ impl LieGroup for MatrixGroup {
         let column = |j: usize| correct_length([from.col(j)], [x.as_mut().col_mut(j)]);
         matches!(self.form, Form::Identity).then(|| (0..from.ncols()).map(column).fold(0.0, larger))
     }
+    fn residual_size(&self, g: &GroupMatrix) -> f64 {
+        self.residual_size_of(g)
+    }
     fn correct(&self, g: &mut GroupMatrix, scratch: [&mut GroupMatrix; 2]) -> f64 {
         self.newton_schulz(g, scratch)
     }

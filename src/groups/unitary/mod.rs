@@ -93,6 +93,9 @@ impl LieAlgebra for Unitary {
     fn is_finite(&self, u: &ComplexMatrix) -> bool {
         LinearSpace::is_finite(u)
     }
+    fn check_shape(&self, arg: &'static str, u: &ComplexMatrix) -> Result<(), Error> {
+        self.shape(arg, u, self.n)
+    }
     fn check(&self, arg: &'static str, u: &ComplexMatrix) -> Result<(), Error> {
         self.shape(arg, u, self.n)?;
         let (residual, tolerance) = (u.skew_residual(), MEMBERSHIP);

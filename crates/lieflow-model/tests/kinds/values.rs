@@ -1,7 +1,7 @@
 //! Problems as values: runs that are taken step by step, and curves as numbers.
 
 use lieflow::catalog::MethodSpec;
-use lieflow::{SaveAt, TimeGrid};
+use lieflow::{SaveAt, StepControl, TimeGrid};
 use lieflow_model::kinds::own::{Formulas, Frame, GroupName, Own, Space};
 use lieflow_model::problem::{CurvePlace, Model, Plan, Rows, StepByStep, Steps};
 use lieflow_model::reader::Tree;
@@ -125,6 +125,46 @@ fn formulas_on_parts_are_a_composed_system() {
     let unknown = Tree::table([("field", Tree::from([Tree::from(["z", "0", "0"])]))]);
     let mistakes = Formulas::read(&variables, &[3], &unknown).unwrap_err();
     assert_eq!(mistakes.0[0].key.as_deref(), Some("field[1][1]"));
+}
+
+/// An error in 𝔤 is weighed by what it moves: Ṗ = −b(t)P² with a small b and a large P, as in `tests/driver/weights.rs`.
+#[test]
+fn a_lagrangian_subspace_has_the_digits_of_its_tolerance() {
+    let space = Space::new(&GroupName::Named("Sp(2)".into()), "lagrangian", None, &[1, 1]).unwrap();
+    let field = |t: f64, _: &[f64], v: &mut [f64]| {
+        v[1] = 1e-6 * (1.0 + (20.0 * t).cos());
+        true
+    };
+    let own = space.problem(std::sync::Arc::new(field), false).unwrap();
+    let steps =
+        Steps::ByError { control: StepControl::new(1e-6, 1e-9).unwrap(), t_span: [0.0, 2.0] };
+    let method = "rkmk dopri5 exp".parse().unwrap();
+    let plan = Plan::new(steps, SaveAt::End);
+    let end = own.run(&method, &[1e6], plan, &mut Rows(&mut |_, _| {})).unwrap().state[0];
+    let exact = 1e6 / (3.0 + 40f64.sin() / 20.0);
+    assert!((end / exact - 1.0).abs() < 1e-6, "{end:e} {exact:e}");
+}
+
+/// A pose whose last row is no [0 0 0 1] is a transposed one.
+#[test]
+fn the_last_row_of_a_pose_is_checked() {
+    let space =
+        Space::new(&GroupName::Named("SE(3)".into()), "translation", Some(Frame::Space), &[4, 4])
+            .unwrap();
+    let field = |_: f64, _: &[f64], v: &mut [f64]| {
+        v[2] = 1.0;
+        true
+    };
+    let own = space.problem(std::sync::Arc::new(field), false).unwrap();
+    let method = "rkmk dop853 exp".parse().unwrap();
+    let mut start = vec![0.0; 16];
+    (0..4).for_each(|i| start[5 * i] = 1.0);
+    start[13] = 2.0;
+    let plan = || Plan::new(steps(1.0), SaveAt::End);
+    let refused = own.run(&method, &start, plan(), &mut Rows(&mut |_, _| {})).unwrap_err();
+    assert!(refused.to_string().contains("y[3, 1]"), "{refused}");
+    start[13] = 0.0;
+    own.run(&method, &start, plan(), &mut Rows(&mut |_, _| {})).unwrap();
 }
 
 /// A state, a density matrix and a propagator of U(2) under one H are one motion, that of the closed form.

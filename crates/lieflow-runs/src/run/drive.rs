@@ -7,6 +7,7 @@ use lieflow::catalog::MethodSpec;
 use lieflow::methods::{AnyMethod, Facts, Method, Within};
 use lieflow::problems::PointOf;
 use lieflow::solve::{Interpolant, Interrupted, LONG_STEPS, Solution};
+use lieflow::space::Numbers;
 use lieflow::{Error, Event, RunError, Solve};
 
 use super::following::following;
@@ -166,8 +167,10 @@ pub(super) fn drive_by<P: Runnable>(
             event = event.change(move |t, y| {
                 let mut numbers = all.numbers_of(t, y);
                 change(t, &mut numbers);
-                // As many numbers as the point has: none is refused.
-                let _ = (all.point)(&numbers, y);
+                if (all.point)(&numbers, y).is_err() {
+                    // No point: the run ends with it.
+                    y.each_number(&mut |x| *x = f64::NAN);
+                }
             });
         }
         solve = solve.event(event);

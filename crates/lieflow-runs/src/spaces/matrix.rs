@@ -15,6 +15,7 @@ use lieflow::actions::{Action, Coadjoint, Conjugation, Lagrangian, LeftTranslati
 use lieflow::dense::multiply_into;
 use lieflow::groups::{Adjoint, AlgebraMatrix, GroupMatrix, LieGroup, MatrixGroup};
 use lieflow::maps::PsiOf;
+use lieflow::tolerance::Scales;
 use lieflow::{CoordinateMap, Error, StepError};
 
 /// Which action.
@@ -132,6 +133,31 @@ impl Action<MatrixGroup> for MatrixAction {
             MatrixWork::Lagrangian(work) => Lagrangian.generate(group, v, p, dp, work),
         }
     }
+    fn error_ratio(
+        &self,
+        group: &MatrixGroup,
+        e: &AlgebraMatrix,
+        p: &Mat<f64>,
+        scales: &mut Scales<'_>,
+    ) -> f64 {
+        match self {
+            MatrixAction::Lagrangian => Lagrangian.error_ratio(group, e, p, scales),
+            // All others have a relative error of p.
+            _ => Conjugation.error_ratio(group, e, p, scales),
+        }
+    }
+    fn error_ratio_of_step(
+        &self,
+        group: &MatrixGroup,
+        e: &AlgebraMatrix,
+        ends: [&Mat<f64>; 2],
+        scales: &mut Scales<'_>,
+    ) -> f64 {
+        match self {
+            MatrixAction::Lagrangian => Lagrangian.error_ratio_of_step(group, e, ends, scales),
+            _ => Conjugation.error_ratio_of_step(group, e, ends, scales),
+        }
+    }
     fn lambda<Psi: CoordinateMap<MatrixGroup>>(
         &self,
         psi_u: PsiOf<'_, MatrixGroup, Psi>,
@@ -147,6 +173,12 @@ impl Action<MatrixGroup> for MatrixAction {
                 self.act(group, g, p, q, work);
                 Ok(())
             }
+        }
+    }
+    fn residual_size(&self, group: &MatrixGroup, p: &Mat<f64>) -> f64 {
+        match self {
+            MatrixAction::Translation | MatrixAction::RightTranslation => group.residual_size_of(p),
+            _ => 1.0,
         }
     }
     fn restore(&self, group: &MatrixGroup, p: &mut Mat<f64>, work: &mut MatrixWork) -> Option<f64> {

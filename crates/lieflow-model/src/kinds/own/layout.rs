@@ -1,6 +1,7 @@
 //! Points and values of f as numbers by rows.
 
 use faer::Mat;
+use lieflow::Error;
 use lieflow::groups::{AlgebraMatrix, MatrixGroup, Se3, So3, UnitQuaternions};
 use lieflow_runs::spaces::{Field, Parts, Point, reverse};
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
@@ -9,6 +10,13 @@ use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 pub(super) trait Layout<G: lieflow::LieGroup, Y>: Copy + Send + Sync + 'static {
     /// How many numbers a point has, and a value of f.
     fn sizes(self, group: &G) -> [usize; 2];
+    /// Checks numbers that a point does not have.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`].
+    fn check(self, _rows: &[f64]) -> Result<(), Error> {
+        Ok(())
+    }
     /// The point of these numbers.
     fn point(self, group: &G, rows: &[f64]) -> Y;
     /// rows ← the numbers of the point.
@@ -85,6 +93,16 @@ pub(super) struct Motions;
 impl Layout<Se3<f64>, (Matrix3<f64>, Vector3<f64>)> for Motions {
     fn sizes(self, _: &Se3<f64>) -> [usize; 2] {
         [16, 6]
+    }
+    fn check(self, rows: &[f64]) -> Result<(), Error> {
+        let last = [0.0, 0.0, 0.0, 1.0];
+        match (0..4).find(|&j| rows[12 + j] != last[j]) {
+            None => Ok(()),
+            Some(j) => {
+                let expected = format!("{}: the last row of [R x; 0 1] is [0, 0, 0, 1]", last[j]);
+                Err(Error::OutOfRange { arg: format!("y[3, {j}]"), value: rows[12 + j], expected })
+            }
+        }
     }
     fn point(self, _: &Se3<f64>, rows: &[f64]) -> (Matrix3<f64>, Vector3<f64>) {
         let r = Matrix3::from_fn(|i, j| rows[4 * i + j]);

@@ -134,14 +134,16 @@ where
     }
 
     /// The point of these rows.
-    fn point(&self, y0: &[f64]) -> PointOf<P> {
-        self.layout.point(self.problem.group(), y0)
+    fn point(&self, y0: &[f64]) -> Result<PointOf<P>, Error> {
+        self.layout.check(y0)?;
+        Ok(self.layout.point(self.problem.group(), y0))
     }
 
     /// How points are numbers: by rows.
     fn points(&self) -> Points<P> {
         let (layout, problem) = (self.layout, self.problem.clone());
         let point = move |numbers: &[f64], y: &mut PointOf<P>| {
+            layout.check(numbers)?;
             *y = layout.point(problem.group(), numbers);
             Ok(())
         };
@@ -182,7 +184,7 @@ where
             shared: &|| self.shared(),
             points: &points,
         };
-        P::drive(method, &self.problem, self.point(y0), plan, rows, watcher)
+        P::drive(method, &self.problem, self.point(y0)?, plan, rows, watcher)
     }
 
     fn stepper(
@@ -191,7 +193,7 @@ where
         y0: &[f64],
         steps: StepByStep<'_>,
     ) -> Result<Box<dyn Stepper>, RunError> {
-        P::stepper(method, &self.problem, self.point(y0), steps, self.points())
+        P::stepper(method, &self.problem, self.point(y0)?, steps, self.points())
     }
 
     fn curve(
@@ -200,7 +202,7 @@ where
         y0: &[f64],
         numbers: &[f64],
     ) -> Result<Box<dyn RowCurve>, Error> {
-        let like = self.point(y0);
+        let like = self.point(y0)?;
         P::curve(method, &self.problem, &like, numbers, &self.schema, &|_| self.shared())
     }
 }
