@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use lieflow::solve::Next;
 use lieflow_model::problem::Watcher;
-use lieflow_model::schema::{Component, Observable, Row};
+use lieflow_model::schema::{Branch, Component, Measure, Observable, Row};
 use lieflow_timing::cpu_seconds;
 
 use super::shown::{OwnRows, OwnZeros, Shown};
@@ -29,6 +29,13 @@ pub(super) fn parts_of<'a>(
         .flat_map(|observable| observable.parts.iter().map(move |part| (*observable, part)))
 }
 
+/// The quantities that are written and computed from the state, but for angles and distances from M.
+pub(super) fn derived_of<'a>(watch: &'a Watch<'_>) -> impl Iterator<Item = &'a Observable> {
+    let is_derived =
+        |o: &&&Observable| !o.is_state && !o.is_distance && matches!(o.branch, Branch::Single);
+    watch.written.iter().filter(is_derived).copied()
+}
+
 /// The distances of a run from another motion.
 #[derive(Clone, Debug)]
 pub(super) struct Apart {
@@ -38,6 +45,8 @@ pub(super) struct Apart {
     pub(super) parts: Vec<Largest>,
     /// The distance of each column of these parts.
     pub(super) columns: Vec<Vec<ColumnApart>>,
+    /// The distance of each quantity that is computed from the state, by its length.
+    pub(super) derived: Vec<ColumnApart>,
     /// The largest distance of each column of the invariants.
     pub(super) laws: Vec<f64>,
     /// The distance of the zeros of each event.
@@ -146,7 +155,9 @@ impl Apart {
             .map(|(_, part)| vec![ColumnApart::default(); part.columns.len()])
             .collect();
         let laws = vec![0.0; watch.laws.iter().map(|law| law.columns.len()).sum()];
-        Apart { rows: 0, parts, columns, laws, events: vec![ZerosApart::default(); events] }
+        let derived = derived_of(watch).map(|_| ColumnApart::default()).collect();
+        let events = vec![ZerosApart::default(); events];
+        Apart { rows: 0, parts, columns, derived, laws, events }
     }
 
     /// The distances of rows from others, each pair with its time.
@@ -213,6 +224,11 @@ impl Apart {
         self.rows += 1;
         let laws = watch.laws.iter().flat_map(|law| a[*law].iter().zip(&b[*law]));
         self.laws.iter_mut().zip(laws).for_each(|(gap, (a, b))| *gap = gap.max((a - b).abs()));
+        for (largest, observable) in self.derived.iter_mut().zip(derived_of(watch)) {
+            let [a, b] = [&a[observable], &b[observable]];
+            largest.gap = larger(largest.gap, Measure::Length.distance(a, b));
+            largest.size = largest.size.max(norm(a));
+        }
         let parts = parts_of(watch).zip(sizes);
         let own = self.parts.iter_mut().zip(&mut self.columns);
         for ((largest, columns), ((observable, part), size)) in own.zip(parts) {

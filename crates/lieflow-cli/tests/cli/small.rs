@@ -44,6 +44,29 @@ fn columns_without_a_right_digit_are_told() {
     }
 }
 
+/// A quantity in which the digits of the state cancel has fewer of them, and that is told where it has none. On gl(2) the
+/// group element grows to 3e4, and the momentum in space, which is kept, is a difference of such numbers.
+#[test]
+fn a_quantity_without_a_right_digit_is_told() {
+    let folder = Folder::new();
+    let run = |rtol: &str| {
+        folder.write(
+            "scene.toml",
+            &format!(
+                "[problem]\nkind = \"euler\"\nalgebra = \"gl\"\ninverse_inertia = [[1.0, 0.5], [2.0, 3.0]]\n\
+                 momentum = [[0.3, 1.0], [2.0, 0.5]]\n[method]\nname = \"gauss4\"\n[time]\nt_span = [0.0, 4.0]\n\
+                 rtol = {rtol}\n[output]\nquantities = [\"momentum_space\"]\n"
+            ),
+        );
+        folder.lieflow(&["run", "scene.toml", "--out", "out"]).ok()
+    };
+    let told = "`momentum_space` has no right digit";
+    let rough = run("1e-6");
+    assert!(rough.contains("5 digits are right") && rough.contains(told), "{rough}");
+    let fine = run("1e-12");
+    assert!(!fine.contains(told), "{fine}");
+}
+
 /// A state that is small in most rows has fewer digits there than beside its start, and that is told.
 #[test]
 fn a_state_that_becomes_small_has_fewer_digits() {

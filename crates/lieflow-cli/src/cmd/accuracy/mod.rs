@@ -17,7 +17,7 @@ use lieflow_model::scene::Scene;
 use lieflow_model::schema::{Component, Observable, Row};
 
 use super::apart::{
-    Apart, Beside, ColumnApart, Gap, Largest, Limits, Size, ZerosApart, norm, parts_of,
+    Apart, Beside, ColumnApart, Gap, Largest, Limits, Size, ZerosApart, derived_of, norm, parts_of,
 };
 use super::shown::{Choice, Shown};
 use super::watch::Watch;
@@ -233,6 +233,7 @@ impl<'a> Check<'a> {
         }
         let mut notes = self.small_rows(&apart, share);
         notes.extend(self.small_columns(&apart, share));
+        notes.extend(self.derived_without_digits(&apart, share));
         let laws = apart.laws.iter().map(|gap| gap * share).collect();
         Ok(Checked { accuracy, time_errors, wrong_zeros, other_zeros, laws, notes, warnings })
     }
@@ -286,6 +287,28 @@ impl<'a> Check<'a> {
             ))
         };
         parts_of(self.watch).enumerate().filter_map(told).collect()
+    }
+
+    /// The quantities that are computed from the state and have no right digit, though the state has, in words: numbers
+    /// of it that are large cancel in them.
+    fn derived_without_digits(&self, apart: &Apart, share: f64) -> Vec<String> {
+        let knows_the_state =
+            apart.parts.iter().all(|largest| largest.gap.relative * share < KNOWN);
+        let size = self.run.sizes.iter().map(|size| size.largest).fold(0.0, f64::max);
+        let rounding = AMPLE * explained_by_rounding(self.own.steps, size.max(size * size));
+        let told = |(observable, ColumnApart { gap, size }): (&Observable, &ColumnApart)| {
+            let is_poor = gap * share > size * NO_DIGIT && *size > rounding;
+            (is_poor && knows_the_state).then(|| {
+                format!(
+                    "`{}` has no right digit: it is at most {}, and wrong by {}. It is computed from the state, whose digits \
+                     cancel in it",
+                    observable.name,
+                    rough(*size),
+                    rough(gap * share)
+                )
+            })
+        };
+        derived_of(self.watch).zip(&apart.derived).filter_map(told).collect()
     }
 
     fn scene(&self) -> &'a Scene {
