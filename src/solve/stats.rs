@@ -232,7 +232,8 @@ fn reason(source: &Option<StepError>, is_lost: bool) -> String {
     match source {
         Some(error) => error.to_string(),
         None if is_lost => "t + h is t after rounding, as beside a jump or a pole of f".into(),
-        None => "the error stays above the tolerance".into(),
+        None => "the error stays above the tolerance; where atol is 0, a part that is 0 needs one"
+            .into(),
     }
 }
 

@@ -8,12 +8,13 @@
 
 use super::{GAUSS_2, GAUSS_3, MagnusWork, ROOT_15, magnus_method, sum};
 use crate::error::{Error, StepError};
-use crate::groups::{LieAlgebra, Power, Product, Se3, Se23, So3};
+use crate::groups::{LieAlgebra, Power, Product, Se3, Se23, So3, Translations};
 use crate::maps::{Cay, CoordinateMap};
 use crate::methods::Step;
 use crate::problems::{PointOf, ScalarOf};
 use crate::scalar::Real;
 use crate::so3::cross;
+use crate::space::LinearSpace;
 
 use nalgebra::Vector3;
 
@@ -85,6 +86,14 @@ impl<S: Real> TripleProduct for Se23<S> {
             Vector3::from_fn(|i, _| first[i] + second[i])
         };
         out.1 = (moved(&u.1.0, &w.1.0), moved(&u.1.1, &w.1.1));
+    }
+}
+
+/// 0: as matrices \[0 v; 0 0\], translations have no product.
+impl<V: LinearSpace> TripleProduct for Translations<V> {
+    #[inline]
+    fn triple(&self, _: &V, _: &V, _: &V, _: &mut V, out: &mut V) {
+        out.clear();
     }
 }
 

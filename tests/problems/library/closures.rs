@@ -2,7 +2,6 @@
 
 use super::*;
 use faer::Mat;
-use lieflow::LieGroup;
 use lieflow::actions::{Coadjoint, LeftTranslation, Linear};
 use lieflow::groups::{MatrixGroup, Product, Sample, So3, Translations};
 use lieflow::methods::magnus::Magnus4;
@@ -11,6 +10,7 @@ use lieflow::problems::{
     DynFlow, Fallible, Flow, Invariant, LiePoisson, Oja, RigidBody, RigidBodyN, SphericalPendulum,
     TryFlow, WithHamiltonian,
 };
+use lieflow::{LieGroup, Solve};
 use nalgebra::Vector3;
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
@@ -165,4 +165,56 @@ fn a_pointer_to_a_problem_without_a_hamiltonian() {
     let (mut m, grid) = (momentum(), TimeGrid::with_steps([0.0, 1.0], 2).unwrap());
     let by = EnergyCasimir::new(Cay);
     assert!(integrate(&pointed, &by, &grid, &SaveAt::Ends, &mut m, |_, _| {}).is_err());
+}
+
+/// Every method for linear equations runs on complex matrices and on translations, by name: on U(2) as on its real matrices
+/// \[X −Y; Y X\].
+#[test]
+fn linear_equations_on_unitary_groups_and_translations() {
+    use lieflow::catalog::{MethodsByName, Needs, all_methods};
+    use lieflow::groups::{ComplexMatrix, Unitary};
+    let h = |t: f64| [[0.3, 0.5 * t.cos(), 0.7 * t.sin()], [-0.2, 0.1 * t, 0.0]];
+    let complex = Unitary::new(2).expect("a group");
+    let start = complex.identity();
+    let complex = Flow::of_time(complex, LeftTranslation, move |t, v: &mut ComplexMatrix| {
+        let [[a, x, y], [b, ..]] = h(t);
+        (v.im[(0, 0)], v.im[(1, 1)]) = (a, b);
+        (v.re[(0, 1)], v.re[(1, 0)]) = (y, -y);
+        (v.im[(0, 1)], v.im[(1, 0)]) = (x, x);
+    });
+    let real = MatrixGroup::u(2).expect("a group");
+    let real_start = real.identity();
+    let real = Flow::of_time(real, LeftTranslation, move |t, v| {
+        let [[a, x, y], [b, ..]] = h(t);
+        (v[(0, 1)], v[(1, 0)], v[(2, 3)], v[(3, 2)]) = (y, -y, y, -y);
+        (v[(2, 0)], v[(0, 2)], v[(3, 1)], v[(1, 3)]) = (a, -a, b, -b);
+        (v[(2, 1)], v[(3, 0)], v[(0, 3)], v[(1, 2)]) = (x, x, -x, -x);
+    });
+    let shift =
+        Flow::of_time(Translations::new(V::zeros(), 3), LeftTranslation, |t: f64, v: &mut V| {
+            *v = V::new(t.cos(), 2.0, -t.sin());
+        });
+    let mut methods = 0;
+    for info in all_methods().filter(|info| info.needs == Needs::LinearType) {
+        let spec = info.name.parse().expect("a name");
+        let method = complex.method(&spec).expect("a method");
+        let g =
+            Solve::new(&complex, &method, [0.0, 1.0]).steps(8).run(start.clone()).expect("a run").y;
+        let method = real.method(&spec).expect("a method");
+        let r = Solve::new(&real, &method, [0.0, 1.0])
+            .steps(8)
+            .run(real_start.clone())
+            .expect("a run")
+            .y;
+        for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+            let far = (g.re[(i, j)] - r[(i, j)]).abs() + (g.im[(i, j)] - r[(2 + i, j)]).abs();
+            assert!(far < 1e-14, "{}: {far:e} in ({i}, {j})", info.name);
+        }
+        let method = shift.method(&spec).expect("a method");
+        let y = Solve::new(&shift, &method, [0.0, 1.0]).steps(64).run(V::zeros()).expect("a run").y;
+        let exact = V::new(1f64.sin(), 2.0, 1f64.cos() - 1.0);
+        assert!((y - exact).norm() < 1e-4, "{}: {y}", info.name);
+        methods += 1;
+    }
+    assert!(methods > 8, "{methods}");
 }
