@@ -96,7 +96,8 @@ impl Layout<Se3<f64>, (Matrix3<f64>, Vector3<f64>)> for Motions {
     }
     fn check(self, rows: &[f64]) -> Result<(), Error> {
         let last = [0.0, 0.0, 0.0, 1.0];
-        match (0..4).find(|&j| rows[12 + j] != last[j]) {
+        // Seven digits are enough, as for the rotation.
+        match (0..4).find(|&j| (rows[12 + j] - last[j]).abs() > 1e-6) {
             None => Ok(()),
             Some(j) => {
                 let expected = format!("{}: the last row of [R x; 0 1] is [0, 0, 0, 1]", last[j]);
