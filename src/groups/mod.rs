@@ -40,7 +40,7 @@ pub use translations::Translations;
 #[cfg(feature = "dense")]
 pub use unitary::{ComplexMatrix, Unitary};
 #[cfg(feature = "dense")]
-pub(crate) use unitary::{mul_adjoint_skew, mul_complex};
+pub(crate) use unitary::{minus_adjoint, mul_adjoint_skew, mul_complex};
 
 use rand::Rng;
 
@@ -78,8 +78,8 @@ pub trait LieAlgebra: Send + Sync {
     /// # Errors
     /// [`Error::Shape`] and [`Error::NotInAlgebra`] with the name `arg`. Numbers that are not finite
     /// are accepted here.
-    fn check(&self, _arg: &'static str, _u: &Self::Alg) -> Result<(), Error> {
-        Ok(())
+    fn check(&self, arg: &'static str, u: &Self::Alg) -> Result<(), Error> {
+        self.check_shape(arg, u)
     }
 
     /// Checks the sizes of u alone, where its storage has any.

@@ -65,9 +65,6 @@ impl<V: LinearSpace> LieAlgebra for Translations<V> {
     fn is_finite(&self, u: &V) -> bool {
         u.is_finite()
     }
-    fn check(&self, arg: &'static str, u: &V) -> Result<(), Error> {
-        u.check_sizes(arg, &self.zero)
-    }
     fn check_shape(&self, arg: &'static str, u: &V) -> Result<(), Error> {
         u.check_sizes(arg, &self.zero)
     }

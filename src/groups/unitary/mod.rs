@@ -14,8 +14,8 @@ mod adjoint;
 mod matrix;
 
 pub use matrix::ComplexMatrix;
-use matrix::{adjoint_mul_complex, minus_adjoint};
-pub(crate) use matrix::{mul_adjoint_skew, mul_complex};
+use matrix::adjoint_mul_complex;
+pub(crate) use matrix::{minus_adjoint, mul_adjoint_skew, mul_complex};
 
 use faer::c64;
 use rand::{Rng, RngExt};

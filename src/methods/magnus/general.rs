@@ -2,8 +2,9 @@
 
 use super::TripleProduct;
 use crate::dense::{antisymmetrise, mul, mul_add};
-use crate::groups::{AlgebraMatrix, ComplexMatrix, Form, MatrixGroup, Unitary, mul_complex};
-use crate::scalar::{Ops, tally};
+use crate::groups::{
+    AlgebraMatrix, ComplexMatrix, Form, MatrixGroup, Unitary, minus_adjoint, mul_complex,
+};
 
 /// Two products on so(n), where (uvw)ᵀ = −wvu; four elsewhere.
 impl TripleProduct for MatrixGroup {
@@ -39,13 +40,6 @@ impl TripleProduct for Unitary {
     ) {
         mul_complex(work, u, v);
         mul_complex(out, work, w);
-        antisymmetrise(&mut out.re);
-        tally(|| Ops::adds(self.n() * (self.n() + 1) / 2));
-        for j in 0..self.n() {
-            for i in 0..=j {
-                let sum = out.im[(i, j)] + out.im[(j, i)];
-                (out.im[(i, j)], out.im[(j, i)]) = (sum, sum);
-            }
-        }
+        minus_adjoint(out);
     }
 }

@@ -563,7 +563,6 @@ fn the_output_of_the_scene_is_timed() {
     assert!(with_rows > 10.0 * bare, "one evaluation {bare:e}, 2001 of them {with_rows:e}");
 }
 
-/// An answer names the method, how much faster it is, why, and what it conserves. Without a method it says why.
 /// Ctrl-C keeps what was measured and says how to go on; the same command does, with other options too.
 #[cfg(unix)]
 #[test]
@@ -588,7 +587,6 @@ fn an_interrupted_comparison_goes_on() {
     let message = run.failed(130);
     assert!(message.contains(JOURNAL) && message.contains("the same command goes on"), "{message}");
     let known = points();
-
     let quick = [&args[..], &["--quick", "--error", "1e-5", "--repeat", "2"]].concat();
     let told = folder.lieflow(&quick).ok();
     assert!(told.starts_with(&format!("{known} runs are known from before")), "{told}");

@@ -8,8 +8,7 @@ use lieflow::dense::multiply;
 use lieflow::groups::{AlgebraMatrix, MatrixGroup};
 use lieflow::problems::Flow;
 use lieflow::problems::beam::{Element, transfer_map, tunes};
-use lieflow_runs::spaces::MatrixAction;
-use lieflow_runs::spaces::OnMatrices;
+use lieflow_runs::spaces::{MatrixAction, OnMatrices};
 
 use super::entries::{power, rows, symplectic_defect};
 use super::prelude::*;

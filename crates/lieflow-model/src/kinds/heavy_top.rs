@@ -17,8 +17,7 @@ use nalgebra::{Matrix3, Rotation3, Vector3};
 use super::body::*;
 use super::driven_body::{self, Torques};
 use super::prelude::*;
-use crate::problem::PointOf;
-use crate::problem::Runnable;
+use crate::problem::{PointOf, Runnable};
 
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {

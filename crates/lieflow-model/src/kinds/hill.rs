@@ -8,8 +8,7 @@ use lieflow::groups::AlgebraMatrix;
 use lieflow::methods::magnus::Magnus6;
 use lieflow::problems::{LinearHamiltonian, explained_by_rounding, hill};
 use lieflow::scalar::{Ops, tally};
-use lieflow_runs::spaces::MatrixAction;
-use lieflow_runs::spaces::OnMatrices;
+use lieflow_runs::spaces::{MatrixAction, OnMatrices};
 
 use super::entries::{
     self, check_symmetric, numbered, rows, symmetric, symmetric_part, symplectic_defect, trace,

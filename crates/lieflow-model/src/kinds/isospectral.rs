@@ -3,8 +3,7 @@
 
 use lieflow::dense::norm;
 use lieflow::problems::{IsospectralFlow, toda_lattice};
-use lieflow_runs::spaces::MatrixAction;
-use lieflow_runs::spaces::OnMatrices;
+use lieflow_runs::spaces::{MatrixAction, OnMatrices};
 
 use super::entries::{
     ROUNDING, check_symmetric, diagonal, eigenvalues, numbered, symmetric, upper, upper_columns,

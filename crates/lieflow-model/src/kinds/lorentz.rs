@@ -5,8 +5,7 @@ use lieflow::Problem;
 use lieflow::dense::{multiply, squared_norm};
 use lieflow::groups::{AlgebraMatrix, LieAlgebra, MatrixGroup};
 use lieflow::problems::{ChargedParticle, Flow, four_velocity, lorentz_transformation};
-use lieflow_runs::spaces::MatrixAction;
-use lieflow_runs::spaces::OnMatrices;
+use lieflow_runs::spaces::{MatrixAction, OnMatrices};
 use nalgebra::Vector3;
 
 use super::prelude::*;

@@ -3,8 +3,7 @@
 
 use lieflow::dense::{multiply, norm, qr};
 use lieflow::problems::Oja;
-use lieflow_runs::spaces::MatrixAction;
-use lieflow_runs::spaces::OnMatrices;
+use lieflow_runs::spaces::{MatrixAction, OnMatrices};
 
 use super::entries::{ROUNDING, check_rows, eigenvalues, rows, symmetric};
 use super::prelude::*;

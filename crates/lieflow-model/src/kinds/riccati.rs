@@ -6,8 +6,7 @@
 use lieflow::groups::{AlgebraMatrix, MatrixGroup};
 use lieflow::problems::Flow;
 use lieflow_runs::schema::Branch;
-use lieflow_runs::spaces::MatrixAction;
-use lieflow_runs::spaces::OnMatrices;
+use lieflow_runs::spaces::{MatrixAction, OnMatrices};
 
 use super::entries::{
     ROUNDING, check_symmetric, eigenvalues, numbered, square, symmetric, symmetric_part, upper,

@@ -6,8 +6,7 @@
 
 use lieflow::dense::{multiply, norm, qr, singular_values, symmetric_eigen};
 use lieflow::problems::SubspaceFlow;
-use lieflow_runs::spaces::MatrixAction;
-use lieflow_runs::spaces::OnMatrices;
+use lieflow_runs::spaces::{MatrixAction, OnMatrices};
 
 use super::entries::{ROUNDING, check_rows, numbered, symmetric, trace, upper, upper_columns};
 use super::prelude::*;

@@ -8,9 +8,10 @@ use lieflow::catalog::MethodSpec;
 use lieflow::solve::Stops;
 use lieflow::tolerance::Tolerance;
 use lieflow::{Error, RunError};
-use lieflow_runs::run::CountOnVectors;
-use lieflow_runs::run::{Fit, Layer, Orders, Outcome, Plan, RowCurve, Steps, Watcher};
-use lieflow_runs::run::{StepByStep, Stepper};
+use lieflow_runs::run::{
+    CountOnVectors, Fit, Layer, Orders, Outcome, Plan, RowCurve, StepByStep, Stepper, Steps,
+    Watcher,
+};
 use lieflow_runs::schema::{Law, Schema};
 
 use super::kind::{Figure, PrincipalInertia, Property, high_order};

@@ -7,8 +7,7 @@ use std::time::Duration;
 use lieflow::catalog::MethodSpec;
 use lieflow::solve::Next;
 use lieflow::{Error, RunError, Stats};
-use lieflow_runs::run::Stepper;
-use lieflow_runs::run::{EventPlan, Outcome, Plan, RowCurve, Watcher};
+use lieflow_runs::run::{EventPlan, Outcome, Plan, RowCurve, Stepper, Watcher};
 use lieflow_runs::schema::{Row, Schema};
 
 use super::model::Model;

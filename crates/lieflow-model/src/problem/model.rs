@@ -9,11 +9,10 @@ use lieflow::samples::Samples;
 use lieflow::solve::Stops;
 use lieflow::tolerance::Tolerance;
 use lieflow::{Error, RunError, SaveAt, Stats, StepControl, TimeGrid};
-use lieflow_runs::run::CountOnVectors;
 use lieflow_runs::run::{
-    CurvePlace, Fit, Layer, Orders, Outcome, Plan, RowCurve, Rows, Sink, Steps, Watcher,
+    CountOnVectors, CurvePlace, Fit, Layer, Orders, Outcome, Plan, RowCurve, Rows, Sink,
+    StepByStep, Stepper, Steps, Watcher,
 };
-use lieflow_runs::run::{StepByStep, Stepper};
 use lieflow_runs::schema::Schema;
 
 use super::forms::{Asked, Form, Forms, Run};

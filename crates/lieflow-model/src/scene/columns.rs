@@ -6,8 +6,7 @@ use lieflow::Error;
 use lieflow_runs::schema::{Component, Measure, Row, Schema};
 
 use crate::formula::{Formula, Lets, Names, Parameters};
-use crate::problem::Model;
-use crate::problem::{FormulaKeys, Problem};
+use crate::problem::{FormulaKeys, Model, Problem};
 use crate::reader::{Mistakes, Read, ReadError, Refusal, Tree, read_by_keys, seen};
 
 /// The name of the quantity that `[output.formulas]` is.

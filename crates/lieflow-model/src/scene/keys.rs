@@ -12,8 +12,7 @@ use super::defaults;
 use super::plot::{Entry, PlotFigure};
 use crate::formula::Lets;
 use crate::kinds;
-use crate::problem::Layer;
-use crate::problem::{Kind, Problem, high_order};
+use crate::problem::{Kind, Layer, Problem, high_order};
 use crate::reader::values::{Real, Span, Whole};
 use crate::reader::{
     Either, Key, KeyPath, Read, ReadError, Refusal, Shape, all, at_most_one, read_by_keys, seen,

@@ -13,8 +13,7 @@ use super::keys::{Limits, MethodKeys, OutputKeys, Rows, TimeKeys, Times, with_de
 use super::plot::{PlotFigure, check_plot};
 use super::units::UnitKeys;
 use crate::kinds;
-use crate::problem::{FormulaKeys, KNOTS_MAX, Kind, Problem, SAMPLES};
-use crate::problem::{Layer, Model, Plan, Steps};
+use crate::problem::{FormulaKeys, KNOTS_MAX, Kind, Layer, Model, Plan, Problem, SAMPLES, Steps};
 use crate::reader::{Is, KeyPath, Mistake, ReadError, Refusal, Tree, Value, seen};
 use fnv::FnvHasher;
 use lieflow::StepControl;

@@ -6,10 +6,10 @@
 //! Source: E. Bernardes, S. Viollet, Quaternion to Euler angles conversion (PLoS ONE 17, 2022), which is exact near the
 //! singular angles, too.
 
-use lieflow_runs::schema::Branch;
 use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
+use lieflow_runs::schema::Branch;
 use nalgebra::{Quaternion, UnitQuaternion};
 
 use crate::reader::values::Reals;

@@ -4,8 +4,7 @@ use lieflow::dense::{largest_entry, norm};
 use lieflow::groups::{AlgebraMatrix, LieAlgebra, MatrixGroup};
 use lieflow::problems::{DiscreteGradient, Euler, Hamiltonian, Kinetic, MeanGradient};
 use lieflow::scalar::{Ops, tally};
-use lieflow_runs::spaces::MatrixAction;
-use lieflow_runs::spaces::OnMatrices;
+use lieflow_runs::spaces::{MatrixAction, OnMatrices};
 
 use super::dual::{Dual, Given, OnDual, quantities};
 use super::energy::Energy;

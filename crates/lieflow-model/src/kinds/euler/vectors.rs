@@ -11,8 +11,7 @@ use super::dual::{Dual, Given, OnDual, quantities};
 use super::energy::Energy;
 use crate::formula::{Formula, Names};
 use crate::kinds::prelude::*;
-use crate::problem::PointOf;
-use crate::problem::SampleKeys;
+use crate::problem::{PointOf, SampleKeys};
 
 /// The energy and the initial momentum, N numbers.
 #[derive(Clone, Debug)]

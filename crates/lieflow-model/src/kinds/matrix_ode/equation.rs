@@ -7,8 +7,7 @@ use lieflow::dense::{largest_entry, multiply, norm, squared_norm};
 use lieflow::groups::{AlgebraMatrix, LieAlgebra, LieGroup, MatrixGroup};
 use lieflow::maps::{CoordinateMap, Exp};
 use lieflow::problems::Flow;
-use lieflow_runs::spaces::MatrixAction;
-use lieflow_runs::spaces::OnMatrices;
+use lieflow_runs::spaces::{MatrixAction, OnMatrices};
 
 use super::{ACTIONS, NAMED_MAX, entry_names, letters};
 use crate::formula::{Formula, without_value};

@@ -4,8 +4,7 @@
 use lieflow::dense::{norm, squared_norm};
 use lieflow::groups::MEMBERSHIP;
 use lieflow::problems::{density_matrix, populations_of, von_neumann};
-use lieflow_runs::spaces::MatrixAction;
-use lieflow_runs::spaces::OnMatrices;
+use lieflow_runs::spaces::{MatrixAction, OnMatrices};
 
 use super::super::entries::{ROUNDING, eigenvalues, numbered, symmetric, upper_columns};
 use super::super::prelude::*;

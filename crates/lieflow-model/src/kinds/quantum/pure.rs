@@ -4,8 +4,7 @@
 use lieflow::dense::squared_norm;
 use lieflow::groups::MEMBERSHIP;
 use lieflow::problems::{populations, schrodinger};
-use lieflow_runs::spaces::MatrixAction;
-use lieflow_runs::spaces::OnMatrices;
+use lieflow_runs::spaces::{MatrixAction, OnMatrices};
 
 use super::super::entries::numbered;
 use super::super::prelude::*;
