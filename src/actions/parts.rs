@@ -6,8 +6,9 @@
 //! forms no group elements; example: spins on spheres are `Linear` on SO(3)ᴺ.
 
 use super::{Action, Coadjoint};
-use crate::error::Error;
-use crate::groups::{LieGroup, Power, Product, worse};
+use crate::error::{Error, StepError};
+use crate::groups::{LieAlgebra, LieGroup, Power, Product, worse};
+use crate::maps::{CoordinateMap, PsiOf};
 use crate::scalar::larger;
 use crate::tolerance::Scales;
 
@@ -32,6 +33,7 @@ pub struct Pair<L, R>(pub L, pub R);
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Each<L>(pub L);
 
+#[deny(clippy::missing_trait_methods)] // passes on every function
 impl<A, B, L, R> Action<Product<A, B>> for Pair<L, R>
 where
     A: LieGroup,
@@ -52,6 +54,10 @@ where
     fn check_member(&self, group: &Product<A, B>, p: &Self::Point) -> Result<(), Error> {
         self.0.check_member(&group.0, &p.0)?;
         self.1.check_member(&group.1, &p.1)
+    }
+    #[inline(always)]
+    fn is_finite(&self, group: &Product<A, B>, p: &Self::Point) -> bool {
+        self.0.is_finite(&group.0, &p.0) && self.1.is_finite(&group.1, &p.1)
     }
     fn assign(&self, group: &Product<A, B>, p: &Self::Point, q: &mut Self::Point) {
         self.0.assign(&group.0, &p.0, &mut q.0);
@@ -80,6 +86,18 @@ where
     ) {
         self.0.generate(&group.0, &v.0, &y.0, &mut dy.0, &mut work.0);
         self.1.generate(&group.1, &v.1, &y.1, &mut dy.1, &mut work.1);
+    }
+    #[inline(always)]
+    fn lambda<Psi: CoordinateMap<Product<A, B>>>(
+        &self,
+        psi_u: PsiOf<'_, Product<A, B>, Psi>,
+        p: &Self::Point,
+        q: &mut Self::Point,
+        work: &mut Self::Work,
+    ) -> Result<(), StepError> {
+        let (group, g) = psi_u.form()?;
+        self.act(group, g, p, q, work);
+        Ok(())
     }
     fn residual_size(&self, group: &Product<A, B>, p: &Self::Point) -> A::Scalar {
         larger(self.0.residual_size(&group.0, &p.0), self.1.residual_size(&group.1, &p.1))
@@ -127,6 +145,7 @@ where
     }
 }
 
+#[deny(clippy::missing_trait_methods)] // passes on every function
 impl<G: LieGroup, L: Action<G>> Action<Power<G>> for Each<L> {
     type Point = Box<[L::Point]>;
     /// One copy after the other.
@@ -141,6 +160,10 @@ impl<G: LieGroup, L: Action<G>> Action<Power<G>> for Each<L> {
     }
     fn check_member(&self, group: &Power<G>, p: &Self::Point) -> Result<(), Error> {
         p.iter().try_for_each(|p| self.0.check_member(group.group(), p))
+    }
+    #[inline(always)]
+    fn is_finite(&self, group: &Power<G>, p: &Self::Point) -> bool {
+        p.iter().all(|p| self.0.is_finite(group.group(), p))
     }
     fn assign(&self, group: &Power<G>, p: &Self::Point, q: &mut Self::Point) {
         p.iter().zip(q).for_each(|(p, q)| self.0.assign(group.group(), p, q));
@@ -170,6 +193,18 @@ impl<G: LieGroup, L: Action<G>> Action<Power<G>> for Each<L> {
         for ((v, y), dy) in v.iter().zip(y).zip(dy) {
             self.0.generate(group.group(), v, y, dy, work);
         }
+    }
+    #[inline(always)]
+    fn lambda<Psi: CoordinateMap<Power<G>>>(
+        &self,
+        psi_u: PsiOf<'_, Power<G>, Psi>,
+        p: &Self::Point,
+        q: &mut Self::Point,
+        work: &mut Self::Work,
+    ) -> Result<(), StepError> {
+        let (group, g) = psi_u.form()?;
+        self.act(group, g, p, q, work);
+        Ok(())
     }
     fn residual_size(&self, group: &Power<G>, p: &Self::Point) -> G::Scalar {
         let each = p.iter().map(|p| self.0.residual_size(group.group(), p));
@@ -219,123 +254,119 @@ impl<G: LieGroup, L: Action<G>> Action<Power<G>> for Each<L> {
     }
 }
 
+/// Every function of [`Action`] as the action `$by` of type `$By` has it on `$Group`.
+macro_rules! as_the_action {
+    ($by:expr, $By:ty, $Group:ty) => {
+        type Point = <$By as Action<$Group>>::Point;
+        type Work = <$By as Action<$Group>>::Work;
+
+        fn work(&self, group: &$Group) -> Self::Work {
+            $by.work(group)
+        }
+        fn check(&self, group: &$Group, p: &Self::Point) -> Result<(), Error> {
+            $by.check(group, p)
+        }
+        fn check_member(&self, group: &$Group, p: &Self::Point) -> Result<(), Error> {
+            $by.check_member(group, p)
+        }
+        #[inline(always)]
+        fn is_finite(&self, group: &$Group, p: &Self::Point) -> bool {
+            $by.is_finite(group, p)
+        }
+        fn assign(&self, group: &$Group, p: &Self::Point, q: &mut Self::Point) {
+            $by.assign(group, p, q);
+        }
+        #[inline]
+        fn act(
+            &self,
+            group: &$Group,
+            g: &<$Group as LieGroup>::Elem,
+            p: &Self::Point,
+            q: &mut Self::Point,
+            work: &mut Self::Work,
+        ) {
+            $by.act(group, g, p, q, work);
+        }
+        #[inline]
+        fn generate(
+            &self,
+            group: &$Group,
+            v: &<$Group as LieAlgebra>::Alg,
+            y: &Self::Point,
+            dy: &mut Self::Point,
+            work: &mut Self::Work,
+        ) {
+            $by.generate(group, v, y, dy, work);
+        }
+        #[inline]
+        fn error_ratio(
+            &self,
+            group: &$Group,
+            e: &<$Group as LieAlgebra>::Alg,
+            y: &Self::Point,
+            scales: &mut Scales<'_>,
+        ) -> <$Group as LieAlgebra>::Scalar {
+            $by.error_ratio(group, e, y, scales)
+        }
+        #[inline]
+        fn error_ratio_of_step(
+            &self,
+            group: &$Group,
+            e: &<$Group as LieAlgebra>::Alg,
+            ends: [&Self::Point; 2],
+            scales: &mut Scales<'_>,
+        ) -> <$Group as LieAlgebra>::Scalar {
+            $by.error_ratio_of_step(group, e, ends, scales)
+        }
+        #[inline(always)]
+        fn lambda<Psi: CoordinateMap<$Group>>(
+            &self,
+            psi_u: PsiOf<'_, $Group, Psi>,
+            p: &Self::Point,
+            q: &mut Self::Point,
+            work: &mut Self::Work,
+        ) -> Result<(), StepError> {
+            $by.lambda(psi_u, p, q, work)
+        }
+        fn restore(
+            &self,
+            group: &$Group,
+            p: &mut Self::Point,
+            work: &mut Self::Work,
+        ) -> Option<<$Group as LieAlgebra>::Scalar> {
+            $by.restore(group, p, work)
+        }
+        fn residual_size(&self, group: &$Group, p: &Self::Point) -> <$Group as LieAlgebra>::Scalar {
+            $by.residual_size(group, p)
+        }
+        fn restore_to(
+            &self,
+            group: &$Group,
+            from: &Self::Point,
+            p: &mut Self::Point,
+            work: &mut Self::Work,
+        ) -> Option<<$Group as LieAlgebra>::Scalar> {
+            $by.restore_to(group, from, p, work)
+        }
+    };
+}
+
 /// On 𝔞* × 𝔟*, each part on its own.
+#[deny(clippy::missing_trait_methods)] // passes on every function
 impl<A, B> Action<Product<A, B>> for Coadjoint
 where
     A: LieGroup,
     B: LieGroup<Scalar = A::Scalar>,
     Coadjoint: Action<A> + Action<B>,
 {
-    type Point = (<Coadjoint as Action<A>>::Point, <Coadjoint as Action<B>>::Point);
-    type Work = (<Coadjoint as Action<A>>::Work, <Coadjoint as Action<B>>::Work);
-
-    fn work(&self, group: &Product<A, B>) -> Self::Work {
-        Pair(Coadjoint, Coadjoint).work(group)
-    }
-    fn check(&self, group: &Product<A, B>, p: &Self::Point) -> Result<(), Error> {
-        Pair(Coadjoint, Coadjoint).check(group, p)
-    }
-    fn assign(&self, group: &Product<A, B>, p: &Self::Point, q: &mut Self::Point) {
-        Pair(Coadjoint, Coadjoint).assign(group, p, q);
-    }
-    #[inline]
-    fn act(
-        &self,
-        group: &Product<A, B>,
-        g: &(A::Elem, B::Elem),
-        p: &Self::Point,
-        q: &mut Self::Point,
-        work: &mut Self::Work,
-    ) {
-        Pair(Coadjoint, Coadjoint).act(group, g, p, q, work);
-    }
-    #[inline]
-    fn generate(
-        &self,
-        group: &Product<A, B>,
-        v: &(A::Alg, B::Alg),
-        y: &Self::Point,
-        dy: &mut Self::Point,
-        work: &mut Self::Work,
-    ) {
-        Pair(Coadjoint, Coadjoint).generate(group, v, y, dy, work);
-    }
-    #[inline]
-    fn error_ratio(
-        &self,
-        group: &Product<A, B>,
-        e: &(A::Alg, B::Alg),
-        y: &Self::Point,
-        scales: &mut Scales<'_>,
-    ) -> A::Scalar {
-        Pair(Coadjoint, Coadjoint).error_ratio(group, e, y, scales)
-    }
-    fn restore_to(
-        &self,
-        group: &Product<A, B>,
-        from: &Self::Point,
-        p: &mut Self::Point,
-        work: &mut Self::Work,
-    ) -> Option<A::Scalar> {
-        Pair(Coadjoint, Coadjoint).restore_to(group, from, p, work)
-    }
+    as_the_action!(Pair(Coadjoint, Coadjoint), Pair<Coadjoint, Coadjoint>, Product<A, B>);
 }
 
 /// On (𝔤*)ᴺ, copy by copy.
+#[deny(clippy::missing_trait_methods)] // passes on every function
 impl<G: LieGroup> Action<Power<G>> for Coadjoint
 where
     Coadjoint: Action<G>,
 {
-    type Point = Box<[<Coadjoint as Action<G>>::Point]>;
-    type Work = <Coadjoint as Action<G>>::Work;
-
-    fn work(&self, group: &Power<G>) -> Self::Work {
-        Each(Coadjoint).work(group)
-    }
-    fn check(&self, group: &Power<G>, p: &Self::Point) -> Result<(), Error> {
-        Each(Coadjoint).check(group, p)
-    }
-    fn assign(&self, group: &Power<G>, p: &Self::Point, q: &mut Self::Point) {
-        Each(Coadjoint).assign(group, p, q);
-    }
-    #[inline]
-    fn act(
-        &self,
-        group: &Power<G>,
-        g: &Box<[G::Elem]>,
-        p: &Self::Point,
-        q: &mut Self::Point,
-        work: &mut Self::Work,
-    ) {
-        Each(Coadjoint).act(group, g, p, q, work);
-    }
-    #[inline]
-    fn generate(
-        &self,
-        group: &Power<G>,
-        v: &Box<[G::Alg]>,
-        y: &Self::Point,
-        dy: &mut Self::Point,
-        work: &mut Self::Work,
-    ) {
-        Each(Coadjoint).generate(group, v, y, dy, work);
-    }
-    fn error_ratio(
-        &self,
-        group: &Power<G>,
-        e: &Box<[G::Alg]>,
-        y: &Self::Point,
-        scales: &mut Scales<'_>,
-    ) -> G::Scalar {
-        Each(Coadjoint).error_ratio(group, e, y, scales)
-    }
-    fn restore_to(
-        &self,
-        group: &Power<G>,
-        from: &Self::Point,
-        p: &mut Self::Point,
-        work: &mut Self::Work,
-    ) -> Option<G::Scalar> {
-        Each(Coadjoint).restore_to(group, from, p, work)
-    }
+    as_the_action!(Each(Coadjoint), Each<Coadjoint>, Power<G>);
 }

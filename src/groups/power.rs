@@ -132,6 +132,7 @@ impl<G: LieAlgebra> LieAlgebra for Power<G> {
     }
 }
 
+#[deny(clippy::missing_trait_methods)] // passes on every function
 impl<G: LieGroup> LieGroup for Power<G> {
     type Elem = Box<[G::Elem]>;
     type Vector = Box<[G::Vector]>;
@@ -206,6 +207,9 @@ impl<G: LieGroup> LieGroup for Power<G> {
     }
     fn assign_vector(&self, x: &Self::Vector, y: &mut Self::Vector) {
         x.iter().zip(y).for_each(|(x, y)| self.group.assign_vector(x, y));
+    }
+    fn is_finite_vector(&self, x: &Self::Vector) -> bool {
+        x.iter().all(|x| self.group.is_finite_vector(x))
     }
     fn residual_size(&self, g: &Self::Elem) -> G::Scalar {
         g.iter().map(|g| self.group.residual_size(g)).fold(G::Scalar::lit(1.0), larger)

@@ -100,6 +100,7 @@ impl<A: LieAlgebra, B: LieAlgebra<Scalar = A::Scalar>> LieAlgebra for Product<A,
     }
 }
 
+#[deny(clippy::missing_trait_methods)] // passes on every function
 impl<A: LieGroup, B: LieGroup<Scalar = A::Scalar>> LieGroup for Product<A, B> {
     type Elem = (A::Elem, B::Elem);
     type Vector = (A::Vector, B::Vector);
@@ -126,6 +127,10 @@ impl<A: LieGroup, B: LieGroup<Scalar = A::Scalar>> LieGroup for Product<A, B> {
     fn apply_algebra(&self, v: &Self::Alg, x: &Self::Vector, y: &mut Self::Vector) {
         self.0.apply_algebra(&v.0, &x.0, &mut y.0);
         self.1.apply_algebra(&v.1, &x.1, &mut y.1);
+    }
+    #[inline]
+    fn is_finite_vector(&self, x: &Self::Vector) -> bool {
+        self.0.is_finite_vector(&x.0) && self.1.is_finite_vector(&x.1)
     }
     #[inline]
     fn error_ratio(

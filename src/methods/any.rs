@@ -215,6 +215,7 @@ struct MethodWithWork<P: Problem, M: Method<P>, E> {
     problem: PhantomData<fn(&P)>,
 }
 
+#[deny(clippy::missing_trait_methods)] // passes on every function
 impl<P: Problem, M: Method<P>, E: Estimate<P, M>> Stepper<P> for MethodWithWork<P, M, E> {
     fn take(
         &mut self,
@@ -305,6 +306,7 @@ pub struct AnyWork<'p, P: Problem> {
     doubled: bool,
 }
 
+#[deny(clippy::missing_trait_methods)] // passes on every function
 impl<'p, P> Method<P> for AnyMethod<'p, P>
 where
     P: Problem + 'p,
@@ -418,6 +420,7 @@ where
     }
 }
 
+#[deny(clippy::missing_trait_methods)] // passes on every function
 impl<'p, P> Embedded<P> for AnyMethod<'p, P>
 where
     P: Problem + 'p,

@@ -57,6 +57,15 @@ impl<P: Orthogonal, M: Method<P>> Method<P> for ProjectionMethod<M> {
     fn iterations(&self, work: &Self::Work) -> u64 {
         self.base.iterations(&work.base)
     }
+    fn reused(&self, work: &Self::Work) -> u64 {
+        self.base.reused(&work.base)
+    }
+    fn forget(&self, work: &mut Self::Work) {
+        self.base.forget(&mut work.base);
+    }
+    fn each_memory(&self, work: &mut Self::Work, each: &mut dyn FnMut(&mut f64)) {
+        self.base.each_memory(&mut work.base, each);
+    }
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
         Ok(ProjectionWork { base: self.base.work(problem, like)?, z: like.clone() })
     }

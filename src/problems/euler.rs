@@ -13,7 +13,8 @@ use crate::problems::{
     AlgOf, Invariant, Invariants, LiePoisson, LinearSpace, MomentumTerms, PointOf, Problem,
     TaylorField,
 };
-use crate::scalar::Real;
+use crate::scalar::{Real, larger};
+use crate::tolerance::Scales;
 
 /// A Hamiltonian H : 𝔤* → ℝ. A new Euler equation needs only an implementation of this trait.
 pub trait Hamiltonian<G: Adjoint> {
@@ -322,6 +323,28 @@ where
     ) {
         RightTranslation.generate(group, v, g, dg, right);
         Coadjoint.generate(group, v, m, dm, coadjoint);
+    }
+    #[inline]
+    fn error_ratio(
+        &self,
+        group: &G,
+        e: &G::Alg,
+        p: &Self::Point,
+        scales: &mut Scales<'_>,
+    ) -> G::Scalar {
+        let first = RightTranslation.error_ratio(group, e, &p.0, scales);
+        larger(first, Coadjoint.error_ratio(group, e, &p.1, scales))
+    }
+    #[inline]
+    fn error_ratio_of_step(
+        &self,
+        group: &G,
+        e: &G::Alg,
+        [p, q]: [&Self::Point; 2],
+        scales: &mut Scales<'_>,
+    ) -> G::Scalar {
+        let first = RightTranslation.error_ratio_of_step(group, e, [&p.0, &q.0], scales);
+        larger(first, Coadjoint.error_ratio_of_step(group, e, [&p.1, &q.1], scales))
     }
     fn residual_size(&self, group: &G, p: &Self::Point) -> G::Scalar {
         group.residual_size(&p.0)

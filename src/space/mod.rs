@@ -403,6 +403,7 @@ impl LinearSpace for UnitQuaternion<f64> {
     }
 }
 
+#[deny(clippy::missing_trait_methods)] // passes on every function
 impl<A: Metric, B: Metric<Scalar = A::Scalar>> Metric for (A, B) {
     type Scalar = A::Scalar;
     const IS_SMALL: bool = A::IS_SMALL && B::IS_SMALL;
@@ -457,6 +458,7 @@ impl<A: LinearSpace, B: LinearSpace<Scalar = A::Scalar>> LinearSpace for (A, B) 
     }
 }
 
+#[deny(clippy::missing_trait_methods)] // passes on every function
 impl<M: Metric, const N: usize> Metric for [M; N] {
     type Scalar = M::Scalar;
     #[inline]
@@ -490,6 +492,9 @@ impl<M: Metric, const N: usize> Metric for [M; N] {
 }
 
 impl<M: LinearSpace, const N: usize> LinearSpace for [M; N] {
+    fn check_sizes(&self, arg: &'static str, like: &Self) -> Result<(), Error> {
+        self.iter().zip(like).try_for_each(|(x, like)| x.check_sizes(arg, like))
+    }
     #[inline]
     fn clear(&mut self) {
         self.iter_mut().for_each(M::clear);
@@ -516,6 +521,7 @@ fn norm<S: Real>(sizes: impl Iterator<Item = S>) -> S {
     sizes.fold(S::lit(0.0), |sum, x| sum + x * x).sqrt()
 }
 
+#[deny(clippy::missing_trait_methods)] // passes on every function
 impl<M: Metric> Metric for Box<[M]> {
     type Scalar = M::Scalar;
     #[inline]

@@ -66,6 +66,12 @@ fn a_top_from_rest() {
     };
     let (rough, fine) = (end(1e-6), end(1e-12));
     assert!((rough.0 - fine.0).norm() < 1e-5 * fine.0.norm(), "{} {}", rough.0, fine.0);
+    // The same with its motion in SE(3).
+    let (body, method) = (top.with_group(), Rkmk::new(DOPRI5, Exp));
+    let start = ((Matrix3::identity(), Vector3::zeros()), start);
+    let run = Solve::new(&body, &method, [0.0, 3.0]).tolerances(1e-6, 1e-14).run(start);
+    let momentum = run.expect("a run").y.1.0;
+    assert!((momentum - fine.0).norm() < 1e-5 * fine.0.norm(), "{momentum} {}", fine.0);
 }
 
 /// Ṗ = −b P² with a small b and a large P, and Ṗ = c − P² with a small c from 0.

@@ -54,6 +54,7 @@ pub fn reverse(x: &mut Mat<f64>) {
     x.col_iter_mut().for_each(|column| column.iter_mut().for_each(|x| *x = -*x));
 }
 
+#[deny(clippy::missing_trait_methods)] // passes on every function
 impl Action<MatrixGroup> for MatrixAction {
     type Point = Mat<f64>;
     type Work = MatrixWork;
@@ -90,6 +91,9 @@ impl Action<MatrixGroup> for MatrixAction {
             MatrixAction::Lagrangian => Lagrangian.check_member(group, p),
             _ => Ok(()),
         }
+    }
+    fn is_finite(&self, group: &MatrixGroup, p: &Mat<f64>) -> bool {
+        self.check(group, p).is_ok()
     }
     fn assign(&self, _: &MatrixGroup, p: &Mat<f64>, q: &mut Mat<f64>) {
         q.copy_from(p);
