@@ -74,10 +74,11 @@ pub(super) trait AnyPoints {
     fn correct(&mut self, cadence: &mut Cadence, stats: &mut Stats) -> Result<(), Error>;
     /// Checks that f(t, y) is in 𝔤, so far that steps of this size stay on M. Does nothing where no f is outside.
     fn check_field(&mut self, t: f64, size: f64, stats: &mut Stats) -> Result<(), Error>;
-    /// Checks that y is on M ([`Action::restore`]), and leaves it as it is. Does nothing where no f is outside of 𝔤.
+    /// Records how far y is from M, and leaves it as it is. If the method stays on M and f may be outside of 𝔤, refuses a y
+    /// that is farther from M than rounding moves it.
     ///
     /// It does not see the determinant of SL(n) and SU(n): methods with cay leave these by the error of their order.
-    fn check_state(&mut self) -> Result<(), Error>;
+    fn check_end(&mut self, stays_on_manifold: bool, stats: &mut Stats) -> Result<(), Error>;
     /// Takes the last step again, so that the workspace holds it. to ← its end.
     fn repeat(&mut self, step: Step<f64>) -> Result<(), StepError>;
     /// Prepares the dense output of the last step. Its end is y, or else `to`.
@@ -519,11 +520,16 @@ impl<P: Problem, M: Method<P>> AnyPoints for Points<'_, P, M> {
             false => group.check("f", v),
         }
     }
-    fn check_state(&mut self) -> Result<(), Error> {
-        let Points { problem, y, restore, .. } = self;
+    fn check_end(&mut self, stays_on_manifold: bool, stats: &mut Stats) -> Result<(), Error> {
+        let Points { problem, y, orbit, restore, .. } = self;
         let problem = &**problem;
-        match problem.group().holds_more() {
-            true => check_on_manifold(problem, &mut y.clone(), restore).map(|_| ()),
+        let (group, action) = (problem.group(), problem.action());
+        let Some(residual) = action.restore_to(group, orbit, &mut y.clone(), restore) else {
+            return Ok(());
+        };
+        stats.saw_residual(residual);
+        match stays_on_manifold && group.holds_more() {
+            true => check_residual(problem, residual / action.residual_size(group, y)),
             false => Ok(()),
         }
     }

@@ -40,7 +40,8 @@ pub struct Stats {
     pub restored: u64,
     /// How often the state was too far from M to be corrected ([`RESIDUAL_MAX`](crate::groups::RESIDUAL_MAX)).
     pub not_restored: u64,
-    /// A power of two above all residuals found in these checks; 0 if there was none.
+    /// A power of two above all residuals found in these checks and at the end of the run; 0 if there was none. For a
+    /// method that does not stay on M it is that of the end.
     ///
     /// The residual is ‖M⁻¹gᵀMg − 𝟙‖ on a group, and ||x|²/|x₀|² − 1| for a vector under SO(3). On a compact group it
     /// stays near 1e-14. On a non-compact group compare it with the rounding level ε‖g‖².
@@ -68,6 +69,10 @@ impl Stats {
             true => self.restored += 1,
             false => self.not_restored += 1,
         }
+        self.saw_residual(residual);
+    }
+
+    pub(super) fn saw_residual<S: Real>(&mut self, residual: S) {
         if !residual.all_below(self.residual) && residual.any_below(f64::INFINITY) {
             self.residual = power_of_two_above(residual);
         }

@@ -352,12 +352,8 @@ impl Timeline {
             return Ok(());
         }
         self.check_field(points)?;
-        match self.facts.stays_on_manifold {
-            true => {
-                points.check_state().map_err(|source| RunError::LeftManifold { t: self.t, source })
-            }
-            false => Ok(()),
-        }
+        let checked = points.check_end(self.facts.stays_on_manifold, &mut self.stats);
+        checked.map_err(|source| RunError::LeftManifold { t: self.t, source })
     }
 
     /// Takes equal steps up to number `end` of the run, or fewer, in one call of the method. Afterwards only the last

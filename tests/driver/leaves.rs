@@ -223,6 +223,12 @@ fn a_state_that_has_left_m_is_seen() {
         }
         run => panic!("{run:?}"),
     }
+    // A classical method has an error of its own there, so its run ends as usual, and tells how far its end is from G.
+    let run =
+        Solve::new(&flow, &Rk(RK4), [0.0, 3.0]).dt(1e-3).run(group.identity()).expect("a run");
+    let defect = group.defect(&run.y);
+    assert!(defect > 1e-3, "{defect:e}");
+    assert!(0.2 * defect < run.stats.residual && run.stats.residual < 5.0 * defect, "{run:?}");
 }
 
 /// Rounding of f is no error: near rest, where all of f is rounding, and in the body, where y is large.

@@ -284,8 +284,9 @@ fn a_method_that_leaves_the_group_is_not_helped() {
     let mut g = Matrix3::identity();
     let method = Rk(RK4);
     let stats = integrate(&body, &method, &grid, &SaveAt::Ends, &mut g, |_, _| {}).expect("a run");
-    assert_eq!((stats.restored, stats.residual), (0, 0.0));
-    assert!(So3::new().defect(&g) > 1e-8);
+    let defect = So3::new().defect(&g);
+    assert!(stats.restored == 0 && defect > 1e-8, "{stats:?}");
+    assert!(0.5 * defect < stats.residual && stats.residual < 4.0 * defect, "{stats:?} {defect:e}");
     let mut g = Matrix3::identity();
     let method = Rkmk::new(RK4, Exp);
     let stats = integrate(&body, &method, &grid, &SaveAt::Ends, &mut g, |_, _| {}).expect("a run");
