@@ -48,6 +48,11 @@ impl StepControl {
         &self.tolerance
     }
 
+    /// Sets the tolerances. The rule is that of the new ones.
+    pub fn with_tolerance(self, tolerance: Tolerance) -> Self {
+        StepControl { tolerance, ..self }
+    }
+
     /// Sets the rule of the tolerances.
     pub fn rule(self, rule: Rule) -> Self {
         StepControl { tolerance: self.tolerance.by(rule), ..self }

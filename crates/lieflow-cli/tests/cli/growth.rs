@@ -46,3 +46,49 @@ fn increments_that_are_lost_in_sums_are_counted() {
         );
     }
 }
+
+/// A run of this scene, without a page.
+fn told(scene: &str) -> String {
+    let folder = Folder::new();
+    folder.write("scene.toml", scene);
+    folder.lieflow(&["run", "scene.toml", "--out", "out", "--no-page"]).ok()
+}
+
+/// A pulse that the run from the changed start sees, and the run itself does not, is no growth of small errors.
+#[test]
+fn a_pulse_is_not_taken_for_growth() {
+    for (width, at) in [(0.05, 50.0), (0.1, 62.1), (0.15, 37.3), (0.2, 50.0)] {
+        let out = told(&format!(
+            "[problem]\nkind = \"driven-body\"\ninertia = [1, 2, 3]\nomega_body = [0, 0, 0.01]\n\
+             torque = [\"0\", \"0\", \"exp(-((t-{at})/{width})^2)/{width}\"]\n[time]\nt_span = [0, 100]\n\
+             [output]\nquantities = [\"omega_body\", \"attitude\"]\n"
+        ));
+        let tells = out.contains("WARNING: ") && out.contains("h_max = 0.05");
+        assert!(tells && !out.contains("small errors grow"), "{width}, {at}: {out}");
+        assert!(!out.contains("at the end 0"), "{width}, {at}: {out}");
+    }
+}
+
+/// The digits that are promised of other settings are those of their run: q' = sign(sin 3t) is exact by its default.
+#[test]
+fn the_digits_of_an_advice_are_those_of_its_run() {
+    let scene = "[problem]\nkind = \"composed\"\n[[problem.parts]]\nname = \"q\"\nspace = \"numbers\"\nstart = [0]\n\
+                 field = [\"sign(sin(3*t))\"]\n[time]\nt_span = [0, 20]\n";
+    let out = told(&format!("{scene}dt = 0.8\n[method]\nname = \"gauss4\"\n"));
+    let own = told(scene);
+    assert!(own.contains("about 12 digits are right"), "{own}");
+    let promised = ["11", "12"].map(|digits| format!("lieflow gives about {digits} digits"));
+    assert!(promised.iter().any(|promised| out.contains(promised)), "{out}");
+}
+
+/// A part that is smaller than atol: rtol alone has its digits.
+#[test]
+fn a_part_below_atol_is_told_to_leave_atol_out() {
+    let out = told(
+        "[problem]\nkind = \"composed\"\n[[problem.parts]]\nname = \"x\"\nspace = \"numbers\"\nstart = [1e-16, 0]\n\
+         field = [\"10*x2\", \"-10*x1\"]\n[[problem.parts]]\nname = \"z\"\nspace = \"numbers\"\nstart = [0.9]\n\
+         field = [\"-0.01*z\"]\n[time]\nt_span = [0, 50]\n",
+    );
+    assert!(out.contains("rtol = 1e-14 alone, with atol = 0, would give about"), "{out}");
+    assert!(!out.contains("small errors grow"), "{out}");
+}

@@ -6,7 +6,7 @@ use super::{Check, LONG, OWN, Way};
 use crate::output::{Accuracy, Distance, FoundBy, number, rough};
 
 /// A larger relative error is worth a warning.
-const POOR: f64 = 1e-2;
+pub(super) const POOR: f64 = 1e-2;
 /// A larger one makes a run useless.
 const USELESS: f64 = 0.1;
 /// The relative error that an advice should lead to.
@@ -40,9 +40,6 @@ impl Check<'_> {
         let verdict = if relative <= USELESS { "inaccurate" } else { "not usable" };
         let when = accuracy.when(worst.t);
         let wrong = format!("`{}` is wrong by {off} {when}: this run is {verdict}.", worst.name);
-        if self.moved.get() > POOR {
-            return Some(format!("{wrong} No step is small enough: {SMALL_ERRORS_GROW}."));
-        }
         let Some(seconds) = seconds else { return Some(wrong) };
         let patience = PATIENCE[0].max(PATIENCE[1] * seconds.min(LONG.as_secs_f64()));
         let until = cpu_seconds() + patience;
@@ -55,12 +52,11 @@ impl Check<'_> {
             times.insert(place, worst.t);
         }
         let default = self.tried(Way { default: true, ..OWN }, &times);
-        let is_tried = default.is_some();
-        let default = default.filter(|accuracy| accuracy.relative() <= POOR);
-        let default = default.map(|accuracy| accuracy.digits_in_words());
         // Where high order and the least tolerance do not do, no step does.
-        let is_hopeless = is_tried && default.is_none();
+        let is_hopeless = matches!(default, Some(None));
+        let default = default.flatten().map(|accuracy| accuracy.digits_in_words());
         let smaller = match is_hopeless {
+            true if self.is_by_atol(worst.largest.absolute) => self.without_atol(&times),
             true => self.shorter_steps(&times),
             false => self.smaller_steps(until, seconds, &times),
         };
@@ -78,6 +74,9 @@ impl Check<'_> {
                  what takes longer than a few seconds"
                     .into()
             }
+            (None, None) if self.moved.get() > POOR => {
+                format!("No step is small enough: {SMALL_ERRORS_GROW}")
+            }
             (None, None) => format!(
                 "The default method, at its least tolerance, is not enough either: {SMALL_ERRORS_GROW}"
             ),
@@ -89,10 +88,26 @@ impl Check<'_> {
     /// A limit of the step size that would do at these times, and the digits that it gives.
     fn shorter_steps(&self, times: &[f64]) -> Option<String> {
         let short = self.short_step()?;
-        let accuracy = self.tried(Way { largest: Some(short), ..OWN }, times)?;
-        let digits = accuracy.digits_in_words();
-        (accuracy.relative() <= POOR)
-            .then(|| format!("h_max = {} would give {digits}", number(short)))
+        let accuracy = self.tried(Way { largest: Some(short), ..OWN }, times)??;
+        Some(format!("h_max = {} would give {}", number(short), accuracy.digits_in_words()))
+    }
+
+    /// Could the absolute tolerance alone make this error?
+    fn is_by_atol(&self, error: f64) -> bool {
+        let by_atol = |[_, atol]: [f64; 2]| atol * self.own.steps as f64 >= error;
+        self.scene().tolerances().is_some_and(by_atol)
+    }
+
+    /// The relative tolerance alone, if that would do at these times, and the digits that it gives. A part that is small beside
+    /// the others may be smaller than atol.
+    fn without_atol(&self, times: &[f64]) -> Option<String> {
+        let [rtol, atol] = self.scene().tolerances()?;
+        if atol == 0.0 || rtol == 0.0 {
+            return None;
+        }
+        let accuracy = self.tried(Way { rtol_alone: true, ..OWN }, times)??;
+        let (rtol, digits) = (number(rtol), accuracy.digits_in_words());
+        Some(format!("rtol = {rtol} alone, with atol = 0, would give {digits}"))
     }
 
     /// Smaller steps of the same method that would do at these times, and the digits that they give.
@@ -111,8 +126,7 @@ impl Check<'_> {
                 break;
             }
             let Some(accuracy) = self.tried(Way { factor, ..OWN }, times) else { break };
-            let relative = accuracy.relative();
-            if relative <= POOR {
+            if let Some(accuracy) = &accuracy {
                 let steps = match tolerances {
                     None => format!("dt = {}", number(factor * h)),
                     Some([rtol, atol]) => {
@@ -125,7 +139,7 @@ impl Check<'_> {
                 };
                 best = Some(format!("{steps} would give {}", accuracy.digits_in_words()));
             }
-            if relative <= GOOD {
+            if accuracy.is_some_and(|accuracy| accuracy.relative() <= GOOD) {
                 break;
             }
         }

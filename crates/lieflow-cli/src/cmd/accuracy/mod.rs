@@ -11,11 +11,13 @@ use std::time::{Duration, Instant};
 use lieflow::catalog::MethodSpec;
 use lieflow::problems::explained_by_rounding;
 use lieflow::solve::{Next, Stats, Status};
+use lieflow::tolerance::Tolerance;
 use lieflow::{SaveAt, TimeGrid};
 use lieflow_model::problem::{Outcome, Plan, Steps, Watcher, stop_after_hardest};
-use lieflow_model::scene::Scene;
+use lieflow_model::scene::{Scene, default_tolerances};
 use lieflow_model::schema::{Component, Observable, Row};
 
+use self::advice::POOR;
 use super::apart::{
     Apart, Beside, ColumnApart, Gap, Largest, Limits, Size, ZerosApart, derived_of, norm, parts_of,
 };
@@ -99,9 +101,12 @@ struct Way {
     largest: Option<f64>,
     /// Are steps of one size split?
     split: bool,
+    /// Is the tolerance rtol alone, without atol?
+    rtol_alone: bool,
 }
 
-const OWN: Way = Way { default: false, factor: 1.0, largest: None, split: false };
+const OWN: Way =
+    Way { default: false, factor: 1.0, largest: None, split: false, rtol_alone: false };
 
 /// The steps that a run took.
 #[derive(Clone, Copy, Default)]
@@ -224,7 +229,8 @@ impl<'a> Check<'a> {
         };
         let moved = self.moved_by_last_digits(seconds);
         self.moved.set(moved.as_ref().map_or(0.0, |moved| self.by_rounding(moved.relative())));
-        let (mut accuracy, mut warnings) = (self.judge(found_by, &apart, share, clock), Vec::new());
+        let (mut accuracy, mut warnings) =
+            (self.judge((found_by, share), &apart, self.moved.get(), clock), Vec::new());
         let mut time_errors: Vec<_> = apart.events.iter().map(time_error).collect();
         warnings.extend(moved.and_then(|moved| self.growth_warning(&moved, accuracy.relative())));
         if let Some((other, warning)) = self.passed_over(&accuracy, seconds) {
@@ -330,7 +336,7 @@ impl<'a> Check<'a> {
     /// The plan of a run to time t. A step ends where the motion was the hardest for the run: so it sees a short pulse that
     /// the run has seen.
     fn plan(&self, way: Way, t: f64) -> Result<Plan<'static>, String> {
-        let Way { default, factor, largest, split } = way;
+        let Way { default, factor, largest, split, rtol_alone } = way;
         let plan = match default {
             true => {
                 let order = self.watch.model.order(&self.method(way));
@@ -340,10 +346,26 @@ impl<'a> Check<'a> {
         };
         let mut plan = plan.map_err(|error| error.to_string())?;
         plan.stops.kinks.extend(self.own.hardest);
-        if let (true, Steps::Equal(grid)) = (split, &mut plan.steps) {
-            *grid = grid.split();
+        match &mut plan.steps {
+            Steps::Equal(grid) if split => *grid = grid.split(),
+            Steps::ByError { control, .. } if rtol_alone => {
+                let rule = control.tolerance().rule();
+                let alone = Tolerance::new(factor * self.rtol(way), 0.0);
+                let alone = alone.map_err(|error| error.to_string())?;
+                *control = control.clone().with_tolerance(alone.by(rule));
+            }
+            _ => {}
         }
         Ok(plan)
+    }
+
+    /// rtol of a way to run, without its factor; 0 for steps of one size.
+    fn rtol(&self, way: Way) -> f64 {
+        let order = || self.watch.model.order(&self.method(way)).ok().flatten();
+        match way.default {
+            true => default_tolerances(order(), &[])[0],
+            false => self.scene().tolerances().map_or(0.0, |both| both[0]),
+        }
     }
 
     fn limits<'c>(&'c self, cancel: &'c AtomicBool) -> Limits<'c> {
@@ -452,8 +474,14 @@ impl<'a> Check<'a> {
         Ok((found_by, share, other))
     }
 
-    /// The errors of a run: a share of the distances.
-    fn judge(&self, found_by: FoundBy, apart: &Apart, share: f64, clock: Instant) -> Accuracy {
+    /// The errors of a run: a share of the distances. `moved` is what rounding does to it.
+    fn judge(
+        &self,
+        (found_by, share): (FoundBy, f64),
+        apart: &Apart,
+        moved: f64,
+        clock: Instant,
+    ) -> Accuracy {
         let all = parts_of(self.watch).zip(&apart.parts);
         let parts = all.map(|((observable, part), &Largest { gap, t, last, .. })| {
             let error = |Gap { absolute, relative }: Gap| {
@@ -473,14 +501,14 @@ impl<'a> Check<'a> {
             FoundBy::Exact => f64::EPSILON,
             _ => explained_by_rounding(self.own.steps, 1.0),
         };
-        let unseen = unseen.max(self.moved.get());
+        let unseen = unseen.max(moved);
         let (seconds, rows, parts) = (clock.elapsed().as_secs_f64(), apart.rows, parts.collect());
         let t_end = self.end();
         Accuracy { found_by, seconds, rows, digits: 0, parts, t_end }.with_digits(unseen)
     }
 
-    /// The errors of another run at these times, if they can be found.
-    fn tried(&self, way: Way, times: &[f64]) -> Option<Accuracy> {
+    /// The errors of another run at these times, if they can be found; none inside if that run is poor, too.
+    fn tried(&self, way: Way, times: &[f64]) -> Option<Option<Accuracy>> {
         let clock = Instant::now();
         let (rows, taken) = self.rows_at(way, times).ok()?;
         // The rows of a run that blew up are larger than the motion.
@@ -508,7 +536,10 @@ impl<'a> Check<'a> {
                 self.by_another(way, taken, other).ok()?
             }
         };
-        Some(self.judge(found_by, &apart, share, clock))
+        let moved = if self.is_exact { 0.0 } else { self.moved_in(way, times, &rows) };
+        let accuracy = self.judge((found_by, share), &apart, moved, clock);
+        // Two runs may have the same rounding.
+        Some((moved.max(accuracy.relative()) <= POOR).then_some(accuracy))
     }
 }
 

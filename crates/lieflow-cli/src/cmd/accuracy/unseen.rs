@@ -44,7 +44,7 @@ impl Check<'_> {
             return None;
         }
         let short = self.short_step()?;
-        let most = time_to_search(self.own.steps, if seconds < BRIEF { 0.0 } else { seconds })?;
+        let most = self.time_to_search(seconds)?;
         // The estimate of its time may be wrong: within a pulse f may be dear, or steps small.
         self.deadline.set(Some(cpu_seconds() + most * MISJUDGED));
         let found = self.rows_at(Way { largest: Some(short), ..OWN }, &[end]);
@@ -52,7 +52,7 @@ impl Check<'_> {
         let (rows, taken) = found.ok()?;
         let pair = rows.first().map(|row| (end, [&self.last[..], &row[..]]));
         let apart = Apart::of_rows(self.watch, &self.run.sizes, pair.into_iter());
-        let found = self.judge(FoundBy::ShortSteps, &apart, 1.0, clock);
+        let found = self.judge((FoundBy::ShortSteps, 1.0), &apart, self.moved.get(), clock);
         let growth = (self.moved.get() / (OF_CHANGE * LAST_DIGITS)).max(1.0);
         let rounding = explained_by_rounding(taken.steps, growth);
         let is_far = found.relative() > PASSED_OVER * known.at_end().max(rounding);
@@ -70,32 +70,75 @@ impl Check<'_> {
     /// How far the last digits of the start move the end of a run. Rounding in the run does the same, and a second run
     /// does not see it where both round alike. The exact motion has this error, too.
     pub(super) fn moved_by_last_digits(&self, seconds: f64) -> Option<Accuracy> {
-        let (clock, end) = (Instant::now(), self.end());
-        let method = self.method(OWN);
-        let has_order = self.watch.model.order(&method).ok()?.is_some();
+        let has_order = self.watch.model.order(&self.method(OWN)).ok()?.is_some();
         if self.ended_by_event || (self.is_exact && has_order) {
             return None;
         }
-        let start = self.watch.model.start(&method).ok()?;
-        // Two changes of neighbouring numbers in opposite directions. Steps of one size of an exact method are one step.
-        let (factor, change) = match has_order {
-            true => (1.0, LAST_DIGITS),
-            false => (self.own.steps.max(1) as f64, f64::EPSILON),
+        let brief = MISJUDGED * seconds.max(BRIEF);
+        if !has_order {
+            // Steps of one size of an exact method are one step.
+            let way = Way { factor: self.own.steps.max(1) as f64, ..OWN };
+            let ends = [1.0, -1.0].map(|sign| self.changed_end(way, sign * f64::EPSILON, brief));
+            return Some(self.ends_apart(ends.iter().flatten().map(|end| [&self.last, end])));
+        }
+        let changed = self.changed_end(OWN, LAST_DIGITS, brief);
+        let moved = self.ends_apart(changed.iter().map(|end| [&self.last, end]));
+        if moved.relative() <= GROWN {
+            return Some(moved);
+        }
+        // One of the two may have passed over a short pulse. Runs in short steps do not.
+        let in_short_steps = || {
+            let short = Way { largest: Some(self.short_step()?), ..OWN };
+            let most = MISJUDGED * self.time_to_search(seconds)?;
+            let ends = [0.0, LAST_DIGITS].map(|change| self.changed_end(short, change, most));
+            let [Some(one), Some(other)] = ends else { return None };
+            Some(self.ends_apart([[&one, &other]].into_iter()))
         };
-        let way = Way { factor, ..OWN };
-        let signs = if has_order { &[1.0][..] } else { &[1.0, -1.0] };
-        self.deadline.set(Some(cpu_seconds() + MISJUDGED * seconds.max(BRIEF)));
-        let moved = signs.iter().map(|sign| {
-            let sign = |i: usize| if i.is_multiple_of(2) { *sign } else { -sign };
-            let last_digit = |(i, x): (usize, &f64)| x + sign(i) * change * x;
-            let start = start.iter().enumerate().map(last_digit).collect();
-            self.rows_from(Some(start), way, &[end]).ok()?.0.pop()
-        });
-        let moved: Vec<_> = moved.collect();
+        let other = in_short_steps().filter(|other| other.relative() < moved.relative());
+        Some(other.unwrap_or(moved))
+    }
+
+    /// How long a run in short steps may take.
+    fn time_to_search(&self, seconds: f64) -> Option<f64> {
+        time_to_search(self.own.steps, if seconds < BRIEF { 0.0 } else { seconds })
+    }
+
+    /// The last row of a run from a start whose numbers are changed by this part of them, neighbours in opposite
+    /// directions. None if it takes longer than so many seconds.
+    fn changed_end(&self, way: Way, change: f64, most: f64) -> Option<Vec<f64>> {
+        let start = self.changed_start(way, change)?;
+        self.deadline.set(Some(cpu_seconds() + most));
+        let found = self.rows_from(Some(start), way, &[self.end()]);
         self.deadline.set(None);
-        let pairs = moved.iter().flatten().map(|row| (end, [&self.last[..], &row[..]]));
+        found.ok()?.0.pop()
+    }
+
+    /// The numbers of the start, changed by this part of them, neighbours in opposite directions.
+    fn changed_start(&self, way: Way, change: f64) -> Option<Vec<f64>> {
+        let start = self.watch.model.start(&self.method(way)).ok()?;
+        let sign = |i: usize| if i.is_multiple_of(2) { 1.0 } else { -1.0 };
+        Some(start.iter().enumerate().map(|(i, x)| x + sign(i) * change * x).collect())
+    }
+
+    /// The distances of last rows.
+    fn ends_apart<'r>(&self, pairs: impl Iterator<Item = [&'r Vec<f64>; 2]>) -> Accuracy {
+        let clock = Instant::now();
+        let pairs = pairs.map(|pair| (self.end(), pair.map(|row| &row[..])));
         let apart = Apart::of_rows(self.watch, &self.run.sizes, pairs);
-        Some(self.judge(FoundBy::Exact, &apart, 1.0, clock))
+        self.judge((FoundBy::Exact, 1.0), &apart, 0.0, clock)
+    }
+
+    /// What rounding does to another run at these times, where the rows of the run are known: as [`moved`](Check::moved).
+    pub(super) fn moved_in(&self, way: Way, times: &[f64], rows: &[Vec<f64>]) -> f64 {
+        let start = self.changed_start(way, LAST_DIGITS);
+        let Some(Ok((others, _))) = start.map(|start| self.rows_from(Some(start), way, times))
+        else {
+            return self.moved.get();
+        };
+        let pairs = times.iter().zip(rows.iter().zip(&others));
+        let pairs = pairs.map(|(t, (row, other))| (*t, [&row[..], &other[..]]));
+        let apart = Apart::of_rows(self.watch, &self.run.sizes, pairs);
+        self.by_rounding(self.judge((FoundBy::Exact, 1.0), &apart, 0.0, Instant::now()).relative())
     }
 
     /// What rounding does to the end, where the change of the start moves it by this. A motion that is another one then is
