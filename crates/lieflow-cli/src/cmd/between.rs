@@ -11,7 +11,8 @@ type ValueOfRow = Box<dyn Fn(f64, Row<'_>) -> f64>;
 
 /// A value that is this part of the largest one may be a zero that is found.
 const NEAR_ZERO: f64 = 1e-9;
-/// A function that stays below this many last digits of the largest number of its row is rounding, if it has many zeros.
+/// A function that is moved by as much as it is, where the columns of its row change by so many last digits of their parts,
+/// is rounding, if it has many zeros.
 const ROUNDING: f64 = 100.0 * f64::EPSILON;
 /// Rounding has at least one zero in so many rows.
 const SELDOM: u64 = 8;
@@ -41,8 +42,35 @@ pub(super) struct Between {
     largest: f64,
     /// The largest absolute value at a row, at the end of a step, or at a point that was looked at.
     largest_anywhere: f64,
-    /// The largest value there in units of the largest number of its row.
-    largest_share: f64,
+    /// True if each value there that was not 0 is rounding.
+    is_rounding: bool,
+}
+
+/// Is this value of a function rounding of the columns of its row? A column has the rounding of its part.
+fn is_rounding_of(value: f64, t: f64, row: Row<'_>, function: &ValueOfRow) -> bool {
+    let mut numbers = row.numbers().to_vec();
+    let mut moved = 0.0;
+    for observable in row.schema() {
+        let terms = row.terms(observable);
+        for part in &observable.parts {
+            let entries = &row[observable][part.columns.clone()];
+            let size = entries.iter().chain(&[terms]).fold(0.0, |size: f64, x| size.max(x.abs()));
+            for column in part.columns.clone() {
+                let place = observable.place(column);
+                let before = numbers[place];
+                numbers[place] += ROUNDING * size;
+                let there = function(t, row.schema().row(&numbers));
+                numbers[place] = before;
+                if there.is_finite() {
+                    moved += (there - value).abs();
+                }
+                if moved >= value.abs() {
+                    return true;
+                }
+            }
+        }
+    }
+    false
 }
 
 impl Between {
@@ -58,7 +86,7 @@ impl Between {
             rows: 0,
             largest: 0.0,
             largest_anywhere: 0.0,
-            largest_share: 0.0,
+            is_rounding: true,
         }
     }
 
@@ -67,7 +95,7 @@ impl Between {
         let value = (self.value)(t, row);
         self.rows += 1;
         self.largest = self.largest.max(value.abs());
-        self.note_value(value, row);
+        self.note_value(value, (t, row));
         if let Some(before) = self.before
             && self.rows <= LOOKED_AT
         {
@@ -85,15 +113,15 @@ impl Between {
 
     /// The end of a step.
     pub(super) fn see_end_of_step(&mut self, t: f64, row: Row<'_>) {
-        self.note_value((self.value)(t, row), row);
+        self.note_value((self.value)(t, row), (t, row));
     }
 
     /// A value of the function with this row.
-    fn note_value(&mut self, value: f64, row: Row<'_>) {
+    fn note_value(&mut self, value: f64, (t, row): (f64, Row<'_>)) {
         if value != 0.0 {
-            let size = row.values().iter().fold(0.0, |size: f64, x| size.max(x.abs()));
             self.largest_anywhere = self.largest_anywhere.max(value.abs());
-            self.largest_share = self.largest_share.max(value.abs() / size);
+            // Once a value is not rounding, no other is asked.
+            self.is_rounding = self.is_rounding && is_rounding_of(value, t, row, &self.value);
         }
     }
 
@@ -103,7 +131,7 @@ impl Between {
         let values: Vec<f64> = (0..=POINTS).map(|k| (self.value)(at(k), row)).collect();
         let swings =
             values.windows(2).filter(|pair| (pair[0] > 0.0) != (pair[1] > 0.0)).count() as u64;
-        values.iter().for_each(|value| self.note_value(*value, row));
+        (0..).zip(&values).for_each(|(k, value)| self.note_value(*value, (at(k), row)));
         // In one direction every second zero counts, and the columns move a little.
         if swings > 2 * found + 2 {
             self.missed += 1;
@@ -117,7 +145,7 @@ impl Between {
 
     /// Are the values of the function rounding alone, with this many zeros?
     pub(super) fn is_rounding(&self, zeros: u64) -> bool {
-        self.rows > 1 && self.largest_share <= ROUNDING && SELDOM * zeros > self.rows
+        self.rows > 1 && self.is_rounding && SELDOM * zeros > self.rows
     }
 
     /// The warning about zeros that were missed.

@@ -195,3 +195,28 @@ fn a_run_that_ends_within_a_step_breaks_no_promise() {
         "{told}"
     );
 }
+
+/// Numbers of other units in a row say nothing of the rounding of a function: a satellite in metres that swings by 1e-6.
+#[test]
+fn rounding_of_a_function_is_that_of_its_own_numbers() {
+    let folder = Folder::new();
+    let scene = |when: &str| {
+        format!(
+            "[problem]\nkind = \"composed\"\nparameters = {{n = 7.292e-5}}\n[[problem.parts]]\nname = \"r\"\n\
+             space = \"numbers\"\nstart = [42164e3, 0]\nfield = [\"-n*r2\", \"n*r1\"]\n[[problem.parts]]\nname = \"th\"\n\
+             space = \"numbers\"\nstart = [1e-6, 0]\nfield = [\"th2\", \"-3*n^2*th1\"]\n[time]\nt_span = [0, 864000]\n\
+             rtol = 1e-12\n[[events]]\nname = \"turn\"\nwhen = \"{when}\"\n[output]\ncount = 20\n"
+        )
+    };
+    let told = |when: &str| {
+        folder.write("scene.toml", &scene(when));
+        folder.lieflow(&["run", "scene.toml", "--out", "out", "--no-page"]).ok()
+    };
+    let turns = told("th2");
+    assert!(turns.contains("event turn: 35 times"), "{turns}");
+    assert!(!turns.contains("rounding. Its") && !turns.contains("up to rounding"), "{turns}");
+    assert!(turns.contains("times right to about"), "{turns}");
+    // A function that is 0 but for rounding: |r|² is constant.
+    let none = told("r1^2 + r2^2 - 42164e3^2");
+    assert!(none.contains("its function is zero up to rounding"), "{none}");
+}

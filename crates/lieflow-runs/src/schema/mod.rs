@@ -365,6 +365,11 @@ impl<'a> Row<'a> {
         &self.numbers[..self.schema.width]
     }
 
+    /// What names the values.
+    pub fn schema(self) -> &'a Schema {
+        self.schema
+    }
+
     /// The values of the quantity of that name.
     ///
     /// # Errors
