@@ -70,7 +70,7 @@ pub fn run(args: &CompareArgs) -> Result<(), CliError> {
         candidates.extend(Candidate::all_that_fit(&scene, &quantities, layer)?);
     }
     if !args.methods.is_empty() {
-        candidates = Candidate::chosen(&candidates, &args.methods)?;
+        candidates = Candidate::chosen(&scene, &quantities, &candidates, &args.methods)?;
     }
     if let Some(name) = &args.keep {
         let kept = Kept::of(&scene, name)?;

@@ -66,7 +66,7 @@ pub fn run(args: &OrderArgs) -> Result<(), CliError> {
         true => vec![scene.method.label()],
         false => args.methods.clone(),
     };
-    let mut candidates = Candidate::chosen(&all, &names)?;
+    let mut candidates = Candidate::chosen(&scene, &quantities, &all, &names)?;
     candidates.retain(|candidate| !candidate.adaptive);
 
     let stop = listen()?;

@@ -1,7 +1,10 @@
 //! What is compared: methods with their parts, on a layer, in steps of one size or of their own.
 
+use std::collections::HashSet;
+
 use lieflow::catalog::{Family, MethodInfo, MethodSpec, Property, TABLEAUS, all_methods};
 use lieflow::maps::MAPS;
+use lieflow::names::same;
 
 use crate::error::CliError;
 use lieflow_model::problem::Layer;
@@ -108,13 +111,8 @@ impl Candidate {
                 for map in &maps {
                     let mut method = MethodSpec::new(info.name, *map);
                     method.tableau = tableau.map(Into::into);
-                    if model.fits(&method).is_err() {
-                        continue;
-                    }
-                    let pair = method.has_pair()?;
-                    fitting.push(Candidate { method: method.clone(), layer, adaptive: false });
-                    if pair {
-                        fitting.push(Candidate { method, layer, adaptive: true });
+                    if model.fits(&method).is_ok() {
+                        fitting.extend(Candidate::by(method, layer)?);
                     }
                 }
             }
@@ -122,45 +120,90 @@ impl Candidate {
         Ok(fitting)
     }
 
-    /// The candidates that a name stands for: the name of a method, or a method with parts as in
-    /// `rkmk dopri5 cay`. What follows a method in the tables, `, adaptive, general`, may stand in the list
-    /// as it does there: pairs go in both kinds of steps anyway, and layers are chosen apart.
+    /// A method on a layer, in steps of one size, and in steps of its own if it estimates its error.
+    fn by(method: MethodSpec, layer: Layer) -> Result<impl Iterator<Item = Self>, CliError> {
+        let adaptive =
+            method.has_pair()?.then(|| Candidate { method: method.clone(), layer, adaptive: true });
+        Ok([Candidate { method, layer, adaptive: false }].into_iter().chain(adaptive))
+    }
+
+    /// Is it this method with these parts? Parts that are not given may be any.
+    fn is_with(&self, given: &MethodSpec) -> bool {
+        let MethodSpec { name, map, tableau, q } = &self.method;
+        let is_part = |given: &Option<String>, part| given.is_none() || given == part;
+        *name == given.name
+            && is_part(&given.map, map)
+            && is_part(&given.tableau, tableau)
+            && *q == given.q
+    }
+
+    /// The candidates that these names stand for: the name of a method, or a method with parts as in
+    /// `rkmk dopri5 cay`. A method with parts that the list does not have, as `rkmk4 q=2`, is one more candidate if it fits
+    /// the scene. What follows a method in the tables, `, adaptive, general`, may stand among the names as it does there:
+    /// pairs go in both kinds of steps anyway, and layers are chosen apart. They are in the order of the list.
     ///
     /// # Errors
     /// A name that stands for none of them.
-    pub fn chosen(all: &[Self], names: &[String]) -> Result<Vec<Self>, CliError> {
-        let stands_for = |name: &str, candidate: &Candidate| {
-            let label = candidate.method.label();
-            label == name || label.strip_prefix(name).is_some_and(|rest| rest.starts_with(' '))
-        };
-        let names = || {
-            let names = names.iter().map(|name| name.trim());
-            names.filter(|name| !["adaptive", "general"].contains(name))
-        };
-        if names().next().is_none() {
+    pub fn chosen(
+        scene: &Scene,
+        quantities: &[&str],
+        all: &[Self],
+        names: &[String],
+    ) -> Result<Vec<Self>, CliError> {
+        let names = names.iter().map(|name| name.trim());
+        let names: Vec<&str> =
+            names.filter(|name| !["adaptive", "general"].contains(name)).collect();
+        if names.is_empty() {
             return Err(CliError::Message(
                 "no method is named, expected names such as \"rkmk4 cay\"".into(),
             ));
         }
-        for name in names() {
-            if !all.iter().any(|candidate| stands_for(name, candidate)) {
-                let mut known: Vec<&str> = all.iter().map(|c| c.method.name.as_str()).collect();
-                known.dedup();
-                let first = name.split_whitespace().next().unwrap_or_default();
-                return Err(CliError::Message(if all_methods().any(|info| info.name == first) {
-                    format!(
-                        "no method `{name}` fits this scene; `lieflow methods --for` with the scene lists those that fit"
-                    )
-                } else if TABLEAUS.iter().any(|tableau| tableau.name == first) {
-                    format!("`{first}` is a tableau: name it after a method, as in `rkmk {name}`")
-                } else {
-                    let near = suggest(name, &known).map(|near| format!("did you mean `{near}`?"));
-                    let help = near.unwrap_or_else(|| "`lieflow methods` lists them".into());
-                    format!("unknown method `{name}`; {help}")
-                }));
+        let mut layers: Vec<Layer> = all.iter().map(|candidate| candidate.layer).collect();
+        layers.dedup();
+        let mut chosen: Vec<Self> = Vec::new();
+        for name in names {
+            let given = match name.parse::<MethodSpec>() {
+                Ok(given) => given,
+                Err(error) => return Err(not_known(all, name, &error)),
+            };
+            let before = chosen.len();
+            chosen.extend(all.iter().filter(|candidate| candidate.is_with(&given)).cloned());
+            if chosen.len() > before {
+                continue;
+            }
+            let mut why = None;
+            for &layer in &layers {
+                match scene.model_with(layer, quantities)?.fits(&given) {
+                    Ok(_) => chosen.extend(Candidate::by(given.clone(), layer)?),
+                    Err(error) => why = Some(error),
+                }
+            }
+            if chosen.len() == before {
+                let why = why.map_or_else(String::new, |why| format!(": {why}"));
+                return Err(CliError::Message(format!(
+                    "no method `{name}` fits this scene{why}; `lieflow methods --for` with the scene lists those that fit"
+                )));
             }
         }
-        let chosen = |candidate: &&Candidate| names().any(|name| stands_for(name, candidate));
-        Ok(all.iter().filter(chosen).cloned().collect())
+        let mut seen = HashSet::new();
+        chosen.retain(|candidate| seen.insert(candidate.clone()));
+        chosen.sort_by_key(|one| all.iter().position(|other| other == one).unwrap_or(all.len()));
+        Ok(chosen)
     }
+}
+
+/// The message about a name that is no method, or has parts that the method does not take.
+fn not_known(all: &[Candidate], name: &str, error: &lieflow::Error) -> CliError {
+    let first = name.split_whitespace().next().unwrap_or_default();
+    CliError::Message(if all_methods().any(|info| same(info.name, first)) {
+        format!("there is no method `{name}`: {error}")
+    } else if TABLEAUS.iter().any(|tableau| same(tableau.name, first)) {
+        format!("`{first}` is a tableau: name it after a method, as in `rkmk {name}`")
+    } else {
+        let mut known: Vec<&str> = all.iter().map(|c| c.method.name.as_str()).collect();
+        known.dedup();
+        let near = suggest(name, &known).map(|near| format!("did you mean `{near}`?"));
+        let help = near.unwrap_or_else(|| "`lieflow methods` lists them".into());
+        format!("unknown method `{name}`; {help}")
+    })
 }

@@ -340,14 +340,13 @@ impl<'a> Judge<'a> {
                 let [first, last] = [&first, &last].map(|values| self.schema.row(values));
                 for law in self.schema.laws() {
                     for (&start, &end) in first[law].iter().zip(&last[law]) {
-                        // A sum that is 0 has the size of its terms.
-                        let moved = relative(end - start, start.abs().max(first.terms(law)));
+                        let moved = relative(end - start, size_of_value(start, first.terms(law)));
                         if law.law.is_some_and(|law| law.origin == Origin::Action) {
                             let off = if law.is_distance { end } else { moved };
                             point.off_manifold = off.max(point.off_manifold);
                         }
                         match law.name {
-                            "energy" => point.energy_error = moved,
+                            "energy" => point.energy_error = moved.max(point.energy_error),
                             _ if law.is_distance => {
                                 point.group_residual = end.max(point.group_residual);
                             }
@@ -410,6 +409,11 @@ impl<'a> Judge<'a> {
 /// The times of [`WITHIN`].
 fn times_within([t0, t1]: [f64; 2]) -> [f64; 2] {
     WITHIN.map(|part| t0 + part * (t1 - t0))
+}
+
+/// The size of an invariant: its value, or that of its terms where it is a small difference of large terms.
+fn size_of_value(value: f64, terms: f64) -> f64 {
+    if value.abs() > 1e-3 * terms || terms.is_nan() { value.abs() } else { terms }
 }
 
 fn relative(gap: f64, size: f64) -> f64 {

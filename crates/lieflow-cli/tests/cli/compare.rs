@@ -239,21 +239,6 @@ fn no_advice_below_the_error_of_the_reference() {
     }
 }
 
-/// A list with spaces, and a method as the tables name it.
-#[test]
-fn methods_are_named_as_a_reader_would() {
-    let scene = Scene::parse("scene", SCENE).unwrap();
-    let all = Candidate::all_that_fit(&scene, &["momentum_body"], Layer::General).unwrap();
-    let chosen = |names: &str| {
-        let names: Vec<String> = names.split(',').map(Into::into).collect();
-        let chosen = Candidate::chosen(&all, &names).unwrap();
-        chosen.iter().map(Candidate::label).collect::<Vec<_>>()
-    };
-    assert_eq!(chosen("rk4, taylor8"), ["rk4, general", "taylor8, general"]);
-    let pair = ["rkmk dopri5 cay, general", "rkmk dopri5 cay, adaptive, general"];
-    assert_eq!(chosen(pair[1]), pair);
-}
-
 #[test]
 fn wrong_options_are_refused_by_one_sentence() {
     let folder = Folder::new();
@@ -351,7 +336,8 @@ fn long_times_are_gone_through_to_the_wanted_error() {
     let scene = Scene::parse("scene", SCENE).unwrap();
     let names = ["rkmk4 exp", "rkmk4 cay", "rk4", "cf4", "gauss4", "cf3", "cg3", "taylor4", "mr4"];
     let all = Candidate::all_that_fit(&scene, &["momentum_body"], Layer::Closed).unwrap();
-    let candidates = Candidate::chosen(&all, &names.map(String::from)).unwrap();
+    let candidates =
+        Candidate::chosen(&scene, &["momentum_body"], &all, &names.map(String::from)).unwrap();
     let steps: Vec<u64> = (2..16).map(|k| 1 << k).collect();
     let plan = Plan {
         quantities: &["momentum_body"],
@@ -533,7 +519,8 @@ fn the_output_of_the_scene_is_timed() {
     let rows = Rows::of(&scene);
     assert!(matches!(&rows.save, lieflow::SaveAt::Times(times) if times.len() == 2001));
     let all = Candidate::all_that_fit(&scene, &["momentum_body"], Layer::Closed).unwrap();
-    let candidates = Candidate::chosen(&all, &["exact".into(), "taylor8".into()]).unwrap();
+    let names = ["exact", "taylor8"].map(String::from);
+    let candidates = Candidate::chosen(&scene, &["momentum_body"], &all, &names).unwrap();
     let exact = |rows: &Rows| {
         let plan = Plan {
             quantities: &["momentum_body"],

@@ -1,7 +1,11 @@
-//! Operations are counted on every bundled scene, and they are those that the formulas take.
+//! Single methods on a scene: their operations, their names, and their errors in energy.
 
+use std::time::Duration;
+
+use crate::support::SCENE;
 use lieflow::catalog::MethodSpec;
-use lieflow_cli::measure::{Candidate, Course, Rows, Size};
+use lieflow_cli::measure::{Candidate, Course, Judge, NEVER, Rows, Size};
+use lieflow_model::problem::Layer;
 use lieflow_model::scene::{BUNDLED, Scene};
 
 /// The operations of a step of a scene, over its first steps.
@@ -138,4 +142,45 @@ fn classical_steps_on_matrices_take_what_their_products_take() {
                field = [[\"0\", \"1\"], [\"-(1 - 0.4*cos(2*t))\", \"0\"]]";
     let found = a_step(&scene(own, "point"), &MethodSpec::new("rk4", None), Size::Steps(3));
     assert_eq!(found, Some(4 * (4 + 6 + product) + 7 * 2 * numbers));
+}
+
+/// A list with spaces, and a method as the tables name it.
+#[test]
+fn methods_are_named_as_a_reader_would() {
+    let scene = Scene::parse("scene", SCENE).unwrap();
+    let all = Candidate::all_that_fit(&scene, &["momentum_body"], Layer::General).unwrap();
+    let chosen = |names: &str| {
+        let names: Vec<String> = names.split(',').map(Into::into).collect();
+        let chosen = Candidate::chosen(&scene, &["momentum_body"], &all, &names).unwrap();
+        chosen.iter().map(Candidate::label).collect::<Vec<_>>()
+    };
+    assert_eq!(chosen("rk4, taylor8"), ["rk4, general", "taylor8, general"]);
+    let pair = ["rkmk dopri5 cay, general", "rkmk dopri5 cay, adaptive, general"];
+    assert_eq!(chosen(pair[1]), pair);
+    // Its parts in another order, and parts that the list of all does not have.
+    assert_eq!(chosen("rkmk cay dopri5"), pair);
+    assert_eq!(chosen("rkmk4 q=2"), ["rkmk4 q=2, general"]);
+    assert_eq!(chosen("rkmk rk4 exp q=2, rk4"), ["rk4, general", "rkmk rk4 exp q=2, general"]);
+}
+
+/// The error in energy is that of the worst body, whatever their order, and relative to the value.
+#[test]
+fn the_energy_of_every_body_counts() {
+    let first = "{inertia = [1, 2, 3], momentum_body = [1, 4, 2]}";
+    let second = "{inertia = [1, 2, 3], momentum_body = [0, 0, 1]}";
+    let energy = |bodies: [&str; 2]| {
+        let text = format!(
+            "[problem]\nkind = \"rigid-bodies\"\nbodies = [{}]\n[time]\nt_span = [0, 10]\nsteps = 8\n",
+            bodies.join(", ")
+        );
+        let scene = Scene::parse("scene", &text).unwrap();
+        let quantities = ["momentum_body", "energy"];
+        let judge =
+            Judge::new(&scene, &quantities, [0.0, 10.0], &[8], Duration::from_secs(1), &NEVER)
+                .unwrap();
+        let model = scene.model_with(Layer::Closed, &judge.quantities()).unwrap();
+        judge.point(&model, &Candidate::rkmk4("exp", Layer::Closed), Size::Steps(8)).energy_error
+    };
+    let (one, other) = (energy([first, second]), energy([second, first]));
+    assert!(one > 0.1 && one == other, "{one:e} {other:e}");
 }

@@ -1,6 +1,6 @@
 //! Euler's equations on the dual of an algebra of matrices.
 
-use lieflow::dense::{largest_entry, norm};
+use lieflow::dense::norm;
 use lieflow::groups::{AlgebraMatrix, LieAlgebra, MatrixGroup};
 use lieflow::problems::{DiscreteGradient, Euler, Hamiltonian, Kinetic, MeanGradient};
 use lieflow::scalar::{Ops, tally};
@@ -204,17 +204,11 @@ impl Dual for EulerEquation {
     fn energy(&self, m: &Mat<f64>) -> f64 {
         self.energy.value(&self.group, m)
     }
-    /// |m|² times the largest weight. The rounding of a formula is that of its value, and of m times its slope.
+    /// |H| and |m||∇H|, whose rounding is that of H.
     fn energy_terms(&self, m: &Mat<f64>) -> f64 {
-        let size = norm(m.as_ref());
-        match &self.energy.form {
-            Form::Weights(weights) => largest_entry(weights.as_ref()) * size * size,
-            Form::Formula(_) => {
-                let mut slope = self.group.zero();
-                self.energy.gradient(m, &mut slope);
-                self.energy(m).abs() + size * norm(slope.as_ref())
-            }
-        }
+        let mut slope = self.group.zero();
+        self.energy.gradient(m, &mut slope);
+        self.energy(m).abs() + norm(m.as_ref()) * norm(slope.as_ref())
     }
     fn casimirs(m: &Mat<f64>, row: &mut Vec<f64>) {
         row.extend(traces(m));
