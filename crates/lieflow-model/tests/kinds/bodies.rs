@@ -452,3 +452,23 @@ fn a_kink_after_a_failed_attempt_does_not_hold_the_steps() {
         }
     }
 }
+
+/// The first row has the quaternion of the scene with its sign, whatever the principal axes are.
+#[test]
+fn the_first_row_has_the_sign_of_the_scene() {
+    for inertia in [
+        "[2, 1, 1.5]",
+        "[[2, 0.3, 0], [0.3, 1.5, 0], [0, 0, 2.5]]",
+        "[[2, 0, 0], [0, 1.5, -0.2], [0, -0.2, 1.8]]",
+        "[[2, 0.1, 0.2], [0.1, 1.5, -0.3], [0.2, -0.3, 1.8]]",
+    ] {
+        for sign in [1.0, -1.0] {
+            let q = [0.5, -0.5, 0.1, 0.7].map(|x| sign * x);
+            let problem = format!(
+                "kind = \"rigid-body\"\ninertia = {inertia}\nomega_body = [0.1, 0.2, 0.3]\nquaternion = {q:?}"
+            );
+            let start = &rows(&scene(&problem, RKMK4, FINE, "[\"quaternion\"]"))[0];
+            assert!(far(&start[1..], &q) < 1e-14, "{inertia}: {start:?} {q:?}");
+        }
+    }
+}

@@ -144,10 +144,10 @@ pub(in crate::kinds) const fn attitude<S: AsBody>() -> Quantity<S> {
 /// The quaternion of the attitude, and whether its sign is that of the state; NaN where the state is no rotation.
 fn wxyz<S: Oriented>(body: &S, y: &PointOf<S>) -> ([f64; 4], bool) {
     let orientation = body.orientation(y);
-    let axes = body
-        .axes()
-        .map_or(Ok(UnitQuaternion::identity()), |axes| quaternion_from_matrix(&axes.transpose()));
-    let q = axes.map(|axes| quaternion_to_wxyz(&(orientation.quaternion() * axes)));
+    // The quaternion by which the start was multiplied: of its two signs, the transpose may have the other one.
+    let axes =
+        body.axes().map_or(Ok(UnitQuaternion::identity()), |axes| quaternion_from_matrix(&axes));
+    let q = axes.map(|axes| quaternion_to_wxyz(&(orientation.quaternion() * axes.conjugate())));
     (q.unwrap_or([f64::NAN; 4]), matches!(orientation, Orientation::Quaternion(_)))
 }
 
