@@ -443,7 +443,7 @@ needs_in_words! {
     Norm = "a norm of the states",
     Series = "a field with Taylor coefficients",
     Body = "a free rigid body in three dimensions",
-    Attitude = "an attitude in the state",
+    Attitude = "an attitude alone as its state",
     State = "a rigid body in three dimensions by its momentum and its attitude",
     LiePoisson = "a Lie–Poisson system, given by its momentum",
     Isospectral = "momenta as matrices",

@@ -48,6 +48,11 @@ pub fn run(args: &PlotArgs) -> Result<(), CliError> {
 /// Checks what can be checked before the runs are read.
 fn check(args: &PlotArgs) -> Result<(), CliError> {
     let wrong = |message: String| Err(CliError::Message(message));
+    for (name, time) in [("from", args.from), ("to", args.to)] {
+        if time.is_some_and(f64::is_nan) {
+            return wrong(format!("--{name} NaN is no time, expected a number"));
+        }
+    }
     if let (Some(from), Some(to)) = (args.from, args.to)
         && from > to
     {

@@ -65,14 +65,15 @@ impl Table {
                     format!("found {}, expected {}", amount(found, "columns"), columns.len());
                 return Err(refused(place, message));
             }
-            for ((field, name), values) in line.split(',').zip(&columns).zip(&mut values) {
+            let fields = line.split(',').zip(&columns).zip(&mut values);
+            for (place_in_row, ((field, name), values)) in fields.enumerate() {
                 let x = field.trim().parse().ok().filter(|x: &f64| x.is_finite());
                 let expected = |what: String| {
                     let found = format!("column {name}: found `{}`", field.trim());
                     refused(place, format!("{found}, expected {what}"))
                 };
                 let x = x.ok_or_else(|| expected("a finite number".into()))?;
-                if let (Some(&last), "t") = (values.last(), name.as_str())
+                if let (Some(&last), 0) = (values.last(), place_in_row)
                     && x <= last
                 {
                     return Err(expected(format!("more than {last} of the row before")));

@@ -139,11 +139,9 @@ impl Algebra {
     /// The form of an element g of the group of n×n matrices.
     pub(super) fn form_of_group(self, n: usize) -> String {
         match self {
-            Algebra::Gl => "its determinant is not 0".into(),
-            Algebra::Sl => "its determinant is 1".into(),
-            Algebra::So => {
-                "its rows are unit vectors at right angles, and its determinant is 1".into()
-            }
+            Algebra::Gl => "det g is not 0".into(),
+            Algebra::Sl => "det g = 1".into(),
+            Algebra::So => "the rows of g are unit vectors at right angles, and det g = 1".into(),
             Algebra::Indefinite(p, q) => {
                 format!("gᵀMg = M, M diagonal with {p} entries 1 and {q} entries -1")
             }
@@ -152,7 +150,7 @@ impl Algebra {
                 format!("gᵀJg = J with J = [0 1; -1 0] of {m}×{m} blocks; {}", coordinates(m))
             }
             Algebra::U => "g†g = 1".into(),
-            Algebra::Su => "g†g = 1, and its determinant is 1".into(),
+            Algebra::Su => "g†g = 1, and det g = 1".into(),
         }
     }
 

@@ -1,5 +1,5 @@
 //! `kind = "lorentz"`: the four-velocity of a charged particle in constant fields, in SO(3,1); see
-//! [`ChargedParticle`]. u̇ = (q/m) F u in the particle's proper time, an equation of linear type.
+//! [`ChargedParticle`]. u̇ = (q/(mc)) F u in the particle's proper time, an equation of linear type.
 
 use lieflow::Problem;
 use lieflow::dense::{multiply, squared_norm};
@@ -13,19 +13,19 @@ use super::prelude::*;
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {
     name: "lorentz",
-    equation: "d(γv)/dτ = (q/m)(γE + γv × B), dγ/dτ = (q/m) E·γv",
+    equation: "d(γv)/dτ = q/(mc) (γE + γv × cB), dγ/dτ = q/(mc) E·γv, v over c",
     summary: "a charged particle in constant fields, by its four-velocity; t is its proper time",
     ..Kind::of::<Keys, Particle>(|section| read_with(section, read))
 };
 
 keys! { Keys {
-    charge_to_mass: Real = "charge over mass",
+    charge_to_mass: Real = "charge over mass and the speed of light, q/(mc); charge over mass where units have c = 1",
     electric: Reals<3> = "the electric field",
     magnetic: Reals<3> = "the magnetic field, times the speed of light",
     velocity: Reals<3> = "initial velocity over the speed of light",
 } }
 
-/// (q/m) F, and the initial four-velocity.
+/// q/(mc) F, and the initial four-velocity.
 #[derive(Clone, Debug)]
 struct Particle {
     tensor: AlgebraMatrix,

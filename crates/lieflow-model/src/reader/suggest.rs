@@ -155,6 +155,9 @@ fn others<'a>(names: &[&'a str]) -> impl Iterator<Item = (&'static str, &'a str)
     OTHER_NAMES.iter().filter_map(move |(other, name)| Some((*other, listed(name)?)))
 }
 
+/// A slip in another name of so few letters is not looked for.
+const NOT_SHORT: usize = 5;
+
 /// Is this another name of one of these, as other programs have it?
 pub fn is_known(given: &str, names: &[&str]) -> bool {
     others(names).any(|(other, _)| names::same(other, given))
@@ -166,7 +169,11 @@ fn meant<'a>(given: &str, names: &[&'a str]) -> Option<Alias<'a>> {
     let other = |given: &str| {
         others(names).find(|(other, _)| names::same(other, given)).map(|(_, name)| alone(name))
     };
+    // A short word is like many others.
     let nearly = || {
+        if given.chars().count() < NOT_SHORT {
+            return None;
+        }
         let near = names::near(given, &others(names).map(|(other, _)| other).collect::<Vec<_>>())?;
         other(near)
     };
@@ -216,6 +223,8 @@ mod tests {
             assert_eq!(suggest(given, &names), Some(meant), "{given}");
         }
         assert_eq!(suggest("colour", &names), None);
+        assert_eq!(suggest("gyroscop", &["heavy-top"]), Some("heavy-top"));
+        assert_eq!(suggest("nope", &["heavy-top"]), None);
         assert_eq!(suggest("x", &[]), None);
         // One letter is close to every other.
         assert_eq!(suggest("c", &["t", "x"]), None);

@@ -182,6 +182,7 @@ fn what_is_no_file_of_samples_is_refused_at_its_line() {
         ("t,u\n0,1\n", &["data.csv: found 1 row, expected at least 2"]),
         ("t,u\n0,0\n1e-3,1e307\n", &["data.csv: columns[1][2] = 1e307", "slope"]),
         ("t,w1\n0,1\n1,2\n", &["data.csv: `w1` is the name of a variable already", "another name"]),
+        ("t,t\n0,1\n1,1\n", &["data.csv: `t` is the name of a variable already"]),
         ("t,u,t\n0,1,0\n1,2,1\n", &["data.csv: `t` is the name of a variable already"]),
         ("t,u,u\n0,1,0\n1,2,1\n", &["data.csv: `u` is the name of a column already"]),
         ("t,k\n0,1\n1,2\n", &["data.csv: `k` is the name of a variable already"]),

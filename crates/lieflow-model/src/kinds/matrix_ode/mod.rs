@@ -32,7 +32,7 @@ use crate::problem::row_columns;
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {
     name: "matrix-ode",
-    equation: "ẏ = f y (translation, linear), f y − y f (conjugation), y fᵀ − fᵀ y (coadjoint), c + d y − y a − y b y \
+    equation: "ẏ = f y (translation, linear), f y − y f (conjugation), y fᵀ − fᵀ y (coadjoint; fᴴ for u and su), c + d y − y a − y b y \
                (lagrangian, f = [a b; c d]), f(t, y) in the algebra",
     summary: "an equation on matrices in formulas, by the action of a matrix group",
     ..Kind::of::<Keys, Equation>(|section| read_with(section, read))
