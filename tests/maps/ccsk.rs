@@ -1,7 +1,7 @@
 //! Coordinates of the second kind on SO(n), GL(n) and Sp(2m): the group, the differential, and the
 //! order of a method with them.
 
-use faer::Mat;
+use faer::{Mat, mat};
 use lieflow::actions::LeftTranslation;
 use lieflow::groups::{AlgebraMatrix, MatrixGroup, Sample};
 use lieflow::maps::{CCSK, CCSK123, CCSK321, CoordinateMap as Map, Exp, Pade22};
@@ -114,4 +114,51 @@ fn order_of_rkmk4() {
         }
         check!(CCSK321, CCSK123, CCSK, Pade22);
     }
+}
+
+/// Large u, whose Ψ(u) is badly conditioned: each entry has its digits. The references have 60 digits.
+#[test]
+fn the_reversed_ordering_of_large_u() {
+    let near = |found: &AlgebraMatrix, expected: &Mat<f64>| {
+        for j in 0..expected.ncols() {
+            for i in 0..expected.nrows() {
+                let (x, right) = (found[(i, j)], expected[(i, j)]);
+                assert!((x - right).abs() < 1e-11 * right.abs(), "({i},{j}): {x:e}, {right:e}");
+            }
+        }
+    };
+    let gl = MatrixGroup::gl(3).expect("a group");
+    let u = gl.algebra(mat![[3.0, -7.0, 1.0], [7.0, -2.0, 5.0], [-4.0, 6.0, -9.0]]).expect("u");
+    let w = gl.algebra(mat![[1.0, 2.0, -1.0], [3.0, -1.0, 0.5], [0.25, -2.0, 4.0]]).expect("w");
+    near(
+        &CCSK123.eval_dpsi_inv(&gl, &u, &w).expect("dΨ⁻¹"),
+        &mat![
+            [-23.0, -0.026951787996341868387, 0.04786765897925877271],
+            [176.0, 30.0, 0.00683911474165887156],
+            [-1.75, -6.0, -3.0]
+        ],
+    );
+    let sp = MatrixGroup::sp(4).expect("a group");
+    let element = |a: [[f64; 2]; 2], b: [[f64; 2]; 2], c: [[f64; 2]; 2]| {
+        let entries = Mat::from_fn(4, 4, |i, j| match (i < 2, j < 2) {
+            (true, true) => a[i][j],
+            (true, false) => b[i][j - 2],
+            (false, true) => c[i - 2][j],
+            (false, false) => -a[j - 2][i - 2],
+        });
+        sp.algebra(entries).expect("u")
+    };
+    let u =
+        element([[4.0, -6.0], [5.0, -7.0]], [[3.0, -8.0], [-8.0, 2.0]], [[-9.0, 4.0], [4.0, 6.0]]);
+    let w =
+        element([[1.0, 2.0], [-3.0, 0.5]], [[2.0, -1.0], [-1.0, 4.0]], [[0.25, 3.0], [3.0, -2.0]]);
+    near(
+        &CCSK123.eval_dpsi_inv(&sp, &u, &w).expect("dΨ⁻¹"),
+        &mat![
+            [-1.0, 0.000066806803160982637251, 2770797619.4254427604, 461799824.17836812759],
+            [129.5, 0.5, 461799824.17836812759, 76966674.186545713776],
+            [-255.75, -29.0, 1.0, -129.5],
+            [-29.0, -152.0, -0.000066806803160982637251, -0.5]
+        ],
+    );
 }

@@ -80,6 +80,29 @@ impl Product {
         finite(v, "dccsk⁻¹")
     }
 
+    /// v ← dΨ_u⁻¹ v of the reversed ordering, at the −u = `minus` of the last [`psi`](Self::psi).
+    ///
+    /// On SO(n) it is d(Ψ₃₂₁)_{−u}⁻¹ of Ψ(u)⁻¹ v Ψ(u), `back` and `ahead` around v. Elsewhere these factors may be large,
+    /// and triangular ones do.
+    fn dpsi_inv_reversed(
+        &mut self,
+        minus: &Mat<f64>,
+        [back, ahead, w]: [&mut Mat<f64>; 3],
+        v: &mut Mat<f64>,
+        min_cos: f64,
+    ) -> Result<(), StepError> {
+        match self {
+            Product::SoN(at) => {
+                mul(w, back.as_ref(), v.as_ref());
+                mul(v, w.as_ref(), ahead.as_ref());
+                at.dpsi_inv(v, min_cos)?;
+            }
+            Product::Gl(at) => at.dpsi_inv_reversed(minus, v),
+            Product::Sp(at) => at.dpsi_inv_reversed(v),
+        }
+        finite(v, "dccsk⁻¹")
+    }
+
     /// g ← Ψ(u)⁻¹, given back = Ψ(u).
     fn inverse(&mut self, u: &Mat<f64>, back: &Mat<f64>, g: &mut Mat<f64>) {
         match self {
@@ -121,7 +144,7 @@ impl CoordinateMap<MatrixGroup> for Ccsk<2, 1, 0> {
     }
 }
 
-/// The reversed ordering: Ψ(u) = Ψ₃₂₁(−u)⁻¹ and dΨ_u⁻¹ w = d(Ψ₃₂₁)_{−u}⁻¹ (Ψ(u)⁻¹ w Ψ(u)).
+/// The reversed ordering: Ψ(u) = Ψ₃₂₁(−u)⁻¹.
 impl CoordinateMap<MatrixGroup> for Ccsk<0, 1, 2> {
     type At = CcskAt;
 
@@ -155,8 +178,6 @@ impl CoordinateMap<MatrixGroup> for Ccsk<0, 1, 2> {
     ) -> Result<(), StepError> {
         group.fits("v", v)?;
         let CcskAt { product, minus, back, ahead, w } = at;
-        mul(w, back.as_ref(), v.as_ref());
-        mul(v, w.as_ref(), ahead.as_ref());
-        product.dpsi_inv(minus, v, self.min_cos)
+        product.dpsi_inv_reversed(minus, [back, ahead, w], v, self.min_cos)
     }
 }

@@ -3,6 +3,9 @@
 //!
 //! With X = \[𝟙 B; 0 𝟙\]⁻¹ w \[𝟙 B; 0 𝟙\]: dΨ_u⁻¹ w has the blocks A: dL_A⁻¹ X₁₁, B: X₁₂,
 //! C: Lᵀ X₂₁ L.
+//!
+//! The reversed ordering is \[𝟙 0; C 𝟙\]·diag(K, K⁻ᵀ)·\[𝟙 B; 0 𝟙\], K the reversed GL(m) chart of A. With
+//! X = \[𝟙 0; C 𝟙\]⁻¹ w \[𝟙 0; C 𝟙\] the blocks are A: dK_A⁻¹ X₁₁, B: K⁻¹ X₁₂ K⁻ᵀ, C: X₂₁.
 
 use faer::Mat;
 
@@ -62,20 +65,52 @@ impl Sp {
         mul_add(x12, 1.0, x11.as_ref(), b.as_ref());
         mul_add(x12, -1.0, b.as_ref(), v.submatrix(m, m, m, m));
         gl.dpsi_inv(a, x11);
-        tally(|| Ops::muladds(2 * m * m));
-        for j in 0..m {
-            for i in 0..m {
-                v[(i, j)] = x11[(i, j)];
-                v[(j + m, i + m)] = -x11[(i, j)];
-                v[(i, j + m)] = 0.5 * (x12[(i, j)] + x12[(j, i)]);
-            }
-        }
+        set_diagonal_blocks(v, x11);
+        set_symmetric_block(v, (0, m), x12);
         mul(x11, l.transpose(), x21.as_ref());
         mul(x12, x11.as_ref(), l.as_ref());
-        for j in 0..m {
-            for i in 0..m {
-                v[(i + m, j)] = 0.5 * (x12[(i, j)] + x12[(j, i)]);
-            }
+        set_symmetric_block(v, (m, 0), x12);
+    }
+
+    /// v ← dΨ_u⁻¹ v of the reversed ordering, at the −u of the last [`psi`](Self::psi): L there is K⁻¹ here.
+    pub(super) fn dpsi_inv_reversed(&mut self, v: &mut Mat<f64>) {
+        let Sp { gl, a, c, l, x, .. } = self;
+        let m = a.nrows();
+        let [x11, x12, x21] = x;
+        // With c = −C: X₁₁ = v₁₁ − v₁₂ c, X₂₁ = c X₁₁ + v₂₁ − v₂₂ c, X₁₂ = v₁₂.
+        x12.copy_from(v.submatrix(0, m, m, m));
+        x11.copy_from(v.submatrix(0, 0, m, m));
+        mul_add(x11, -1.0, x12.as_ref(), c.as_ref());
+        x21.copy_from(v.submatrix(m, 0, m, m));
+        mul_add(x21, 1.0, c.as_ref(), x11.as_ref());
+        mul_add(x21, -1.0, v.submatrix(m, m, m, m), c.as_ref());
+        set_symmetric_block(v, (m, 0), x21);
+        gl.dpsi_inv_reversed(a, x11);
+        set_diagonal_blocks(v, x11);
+        mul(x11, l.as_ref(), x12.as_ref());
+        mul(x12, x11.as_ref(), l.transpose());
+        set_symmetric_block(v, (0, m), x12);
+    }
+}
+
+/// The blocks A and −Aᵀ of v.
+fn set_diagonal_blocks(v: &mut Mat<f64>, a: &Mat<f64>) {
+    let m = a.nrows();
+    for j in 0..m {
+        for i in 0..m {
+            v[(i, j)] = a[(i, j)];
+            v[(j + m, i + m)] = -a[(i, j)];
+        }
+    }
+}
+
+/// The block of v that begins at this row and column ← the symmetric part of x.
+fn set_symmetric_block(v: &mut Mat<f64>, (row, column): (usize, usize), x: &Mat<f64>) {
+    let m = x.nrows();
+    tally(|| Ops::muladds(m * m));
+    for j in 0..m {
+        for i in 0..m {
+            v[(row + i, column + j)] = 0.5 * (x[(i, j)] + x[(j, i)]);
         }
     }
 }
