@@ -84,17 +84,20 @@ impl Action<MatrixGroup> for Conjugation {
         p: &mut Mat<f64>,
         _: &mut ConjugationWork,
     ) -> Option<f64> {
-        if !matches!(group.form(), Form::Identity) {
-            return None;
-        }
-        let [from2, p2] = [from, &*p].map(|x| squared_norm(x.as_ref()));
-        if !in_range(from2) {
-            return Some(0.0);
-        }
-        let missing = (from2 - p2) / from2;
-        if missing.abs() < RESIDUAL_MAX {
-            *p *= Scale(1.0 + 0.5 * missing);
-        }
-        Some(missing.abs())
+        matches!(group.form(), Form::Identity).then(|| keep_length([from], [p]))
     }
+}
+
+/// Corrects the length of p to that of `from`, both in parts, and returns the relative error of its square.
+pub(super) fn keep_length<const N: usize>(from: [&Mat<f64>; N], p: [&mut Mat<f64>; N]) -> f64 {
+    let square = |sum: f64, x: &Mat<f64>| sum + squared_norm(x.as_ref());
+    let from2 = from.iter().fold(0.0, |sum, x| square(sum, x));
+    if !in_range(from2) {
+        return 0.0;
+    }
+    let missing = (from2 - p.iter().fold(0.0, |sum, x| square(sum, x))) / from2;
+    if missing.abs() < RESIDUAL_MAX {
+        p.into_iter().for_each(|p| *p *= Scale(1.0 + 0.5 * missing));
+    }
+    missing.abs()
 }

@@ -8,7 +8,9 @@ use faer::{Mat, MatRef};
 use super::Action;
 use crate::dense::{Lu, is_finite, mul_add};
 use crate::error::{Error, StepError};
-use crate::groups::{AlgebraMatrix, GroupMatrix, MatrixGroup, OFF_M_MAX, check_entries};
+use crate::groups::{
+    AlgebraMatrix, GroupMatrix, LieAlgebra, MatrixGroup, OFF_M_MAX, check_entries,
+};
 use crate::maps::CoordinateMap;
 use crate::maps::PsiOf;
 use crate::scalar::{Ops, tally};
@@ -68,8 +70,14 @@ impl Action<MatrixGroup> for Lagrangian {
             false => Err(Error::Shape { arg: "y", rows, cols, expected_rows: m, expected_cols: m }),
         }
     }
-    /// P is symmetric, to 1e-6 of its size. [`act`](Action::act) takes the symmetric part of its result.
-    fn check_member(&self, _: &MatrixGroup, p: &Mat<f64>) -> Result<(), Error> {
+    /// The group is symplectic, so that P stays symmetric: Sp(2m), or U(m) as real matrices. P is symmetric, to 1e-6 of its
+    /// size. [`act`](Action::act) takes the symmetric part of its result.
+    fn check_member(&self, group: &MatrixGroup, p: &Mat<f64>) -> Result<(), Error> {
+        let has_j = || MatrixGroup::sp(group.n()).is_ok_and(|sp| group.m() == sp.m());
+        if !(group.is_complex() || has_j()) {
+            let why = "P stays symmetric under symplectic matrices alone; use MatrixGroup::sp";
+            return Err(Error::Unsupported { what: "Lagrangian", with: group.name(), why });
+        }
         let skew = (p - p.transpose()).norm_max();
         match skew > OFF_M_MAX * p.norm_max() {
             true => Err(Error::NotSymmetric { arg: "y", skew }),

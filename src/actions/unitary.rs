@@ -2,6 +2,7 @@
 //!
 //! The reason is that u(n)* is u(n) by ⟨m, v⟩ = Re tr(m†v).
 
+use super::conjugation::keep_length;
 use super::{Action, Coadjoint, Conjugation};
 use crate::error::Error;
 use crate::groups::{ComplexMatrix, LieAlgebra, Unitary, mul_adjoint_skew, mul_complex};
@@ -17,8 +18,8 @@ impl Action<Unitary> for Conjugation {
         group.zero()
     }
     fn check(&self, group: &Unitary, p: &ComplexMatrix) -> Result<(), Error> {
-        p.check("p", group.n(), group.n())?;
-        group.check("p", p)
+        p.check("y", group.n(), group.n())?;
+        group.check("y", p)
     }
     #[inline]
     fn is_finite(&self, group: &Unitary, p: &ComplexMatrix) -> bool {
@@ -48,6 +49,16 @@ impl Action<Unitary> for Conjugation {
         _: &mut ComplexMatrix,
     ) {
         group.bracket(v, p, dp);
+    }
+    /// The Frobenius norm of p is constant.
+    fn restore_to(
+        &self,
+        _: &Unitary,
+        from: &ComplexMatrix,
+        p: &mut ComplexMatrix,
+        _: &mut ComplexMatrix,
+    ) -> Option<f64> {
+        Some(keep_length(from.parts(), p.parts_mut()))
     }
 }
 
@@ -88,5 +99,14 @@ impl Action<Unitary> for Coadjoint {
         work: &mut ComplexMatrix,
     ) {
         Conjugation.generate(group, v, m, dm, work);
+    }
+    fn restore_to(
+        &self,
+        group: &Unitary,
+        from: &ComplexMatrix,
+        m: &mut ComplexMatrix,
+        work: &mut ComplexMatrix,
+    ) -> Option<f64> {
+        Conjugation.restore_to(group, from, m, work)
     }
 }

@@ -7,6 +7,7 @@ mod hard_cases;
 mod interpolant;
 mod leaves;
 mod modes;
+mod orbits;
 mod physics;
 mod restore;
 mod roots;

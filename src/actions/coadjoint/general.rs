@@ -4,6 +4,7 @@ use faer::Mat;
 
 use super::Coadjoint;
 use crate::actions::Action;
+use crate::actions::conjugation::keep_length;
 use crate::dense::{Lu, congruence, mul, mul_add, skew_commutator};
 use crate::error::Error;
 use crate::groups::{AlgebraMatrix, Form, GroupMatrix, MatrixGroup};
@@ -73,6 +74,16 @@ impl Action<MatrixGroup> for Coadjoint {
         }
         mul(dm, m.as_ref(), v.transpose());
         mul_add(dm, -1.0, v.transpose(), m.as_ref());
+    }
+    /// On SO(n) the Frobenius norm of m is constant, as for [`Conjugation`](crate::actions::Conjugation).
+    fn restore_to(
+        &self,
+        group: &MatrixGroup,
+        from: &Mat<f64>,
+        m: &mut Mat<f64>,
+        _: &mut CoadjointWork,
+    ) -> Option<f64> {
+        matches!(group.form(), Form::Identity).then(|| keep_length([from], [m]))
     }
 }
 

@@ -237,4 +237,16 @@ impl<S: Real> Action<Se23<S>> for Coadjoint {
         self.generate(group, e, y, &mut moved, &mut ());
         y.error_ratio(Gap::of(&moved), scales)
     }
+    /// π and λ keep their lengths.
+    fn restore_to(
+        &self,
+        _: &Se23<S>,
+        from: &Self::Point,
+        m: &mut Self::Point,
+        _: &mut (),
+    ) -> Option<S> {
+        let so3 = So3::new();
+        let found = so3.correct_vector(&from.1.0, &mut m.1.0);
+        worse(found, so3.correct_vector(&from.1.1, &mut m.1.1))
+    }
 }

@@ -204,6 +204,7 @@ impl Action<MatrixGroup> for MatrixAction {
     ) -> Option<f64> {
         match work {
             MatrixWork::Conjugation(work) => Conjugation.restore_to(group, from, p, work),
+            MatrixWork::Coadjoint(work) => Coadjoint.restore_to(group, from, p, work),
             MatrixWork::Linear => Linear.restore_to(group, from, p, &mut ()),
             work => self.restore(group, p, work),
         }
