@@ -192,14 +192,14 @@ impl<G: LieGroup> LieGroup for Power<G> {
         norm2(g.iter().map(|g| self.group.defect(g)))
     }
     fn check_elem(&self, g: &Self::Elem) -> Result<(), Error> {
-        self.check_copies("g", g)?;
+        self.check_copies("y", g)?;
         g.iter().try_for_each(|g| self.group.check_elem(g))
     }
     fn check_member(&self, g: &Self::Elem) -> Result<(), Error> {
         g.iter().try_for_each(|g| self.group.check_member(g))
     }
     fn check_vector(&self, x: &Self::Vector) -> Result<(), Error> {
-        self.check_copies("x", x)?;
+        self.check_copies("y", x)?;
         x.iter().try_for_each(|x| self.group.check_vector(x))
     }
     fn assign(&self, g: &Self::Elem, out: &mut Self::Elem) {

@@ -421,6 +421,11 @@ impl<G: LieGroup, A: Action<G>, F: Field<G, A>, K> Problem for Flow<G, A, F, K> 
     fn f(&self, t: G::Scalar, y: &A::Point, v: &mut G::Alg, work: &mut F::Work) {
         self.group.set_zero(v);
         self.field.f(t, y, v, work);
+        if self.group.check_shape("f", v).is_err() {
+            // A function that stored a value of another size: no number of it is used, and the run ends with that.
+            *v = self.group.zero();
+            self.group.axpy(G::Scalar::lit(f64::NAN), &self.group.zero(), v);
+        }
     }
 }
 

@@ -201,7 +201,10 @@ impl Timeline {
 
     fn owner(&self, points: &dyn AnyPoints) -> String {
         let pace = match &self.pacer {
-            Pacer::Equal { grid, .. } => if grid.is_split() { "split" } else { "equal" }.into(),
+            // The size is that of the whole run, also after it was taken off its grid.
+            Pacer::Equal { grid, .. } => {
+                format!("{} {:?}", if grid.is_split() { "split" } else { "equal" }, grid.h().abs())
+            }
             Pacer::ByError(chooser) => format!("{:?}", chooser.control),
         };
         let costs = (self.facts.step.evaluations, self.facts.step.maps);

@@ -10,7 +10,7 @@ use lieflow::methods::tableau::{DOPRI5, RK4};
 use lieflow::methods::{Embedded, Rk, Rkmk};
 use lieflow::problems::{Flow, PointOf, Problem};
 use lieflow::{Error, LieAlgebra, LieGroup, RunError, Solve};
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Vector3};
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
 
@@ -326,4 +326,27 @@ fn corrections_do_no_harm_where_a_solution_grows() {
         let (size, apart) = (on_gl.norm_l2(), (&*on_group - &*on_gl).norm_l2());
         assert!(size > 1e4 && apart < 1e-10 * size, "{n}: {:e} of {size:e}", apart / size);
     }
+}
+
+/// f stores a value of another size in the middle of a run: its numbers are not used.
+#[test]
+fn a_value_of_another_size_ends_a_run() {
+    let ends =
+        |run: Result<(), RunError>| assert!(matches!(run, Err(RunError::Step(_))), "{run:?}");
+    let copies = Power::new(So3::new(), 2).expect("two");
+    let flow = Flow::of_time(copies, Linear, |t: f64, v: &mut Box<[Vector3<f64>]>| {
+        *v = vec![Vector3::z(); if t < 0.5 { 2 } else { 1 }].into();
+    });
+    let method = Rkmk::new(RK4, Exp);
+    let y: Box<[Vector3<f64>]> = vec![Vector3::x(); 2].into();
+    let run = Solve::new(&flow, &method, [0.0, 1.0]).steps(10).run(y);
+    ends(run.map(drop).map_err(|failed| failed.error));
+
+    let u3 = Unitary::new(3).expect("a group");
+    let flow = Flow::of_time(u3, LeftTranslation, |t: f64, v: &mut ComplexMatrix| {
+        let n = if t < 0.5 { 3 } else { 2 };
+        *v = ComplexMatrix::from_fn(n, n, |i, j| c64::new(0.0, if i == j { 1.0 } else { 0.0 }));
+    });
+    let run = Solve::new(&flow, &method, [0.0, 1.0]).steps(10).run(u3.identity());
+    ends(run.map(drop).map_err(|failed| failed.error));
 }

@@ -245,3 +245,19 @@ fn bytes_that_are_not_of_this_run_are_refused() {
     assert_eq!(bits(run.y()), before, "a refused state changes nothing");
     run.restore(&bytes).expect("its own state");
 }
+
+/// A state of a run with steps of another size is refused.
+#[test]
+fn steps_of_another_size_do_not_go_on() {
+    let spin = spin(|_| 1.0);
+    let method = Rkmk::new(RK4, Exp);
+    let run = |steps: u64| Solve::new(&spin, &method, [0.0, 1.0]).steps(steps);
+    let states = RefCell::new(Vec::new());
+    let keep = |bytes: &[u8]| states.borrow_mut().push(bytes.to_vec());
+    let start = V::new(0.6, 0.0, 0.8);
+    run(10).checkpoints(Duration::ZERO, keep).run(start).expect("a run");
+    let state = states.borrow()[0].clone();
+    assert!(run(10).resume(state.clone()).run(start).is_ok());
+    let refused = run(1000).resume(state).run(start).map(drop).map_err(|failed| failed.error);
+    assert!(refused.is_err_and(|error| error.to_string().contains("choice of steps")));
+}

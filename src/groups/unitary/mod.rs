@@ -161,10 +161,10 @@ impl LieGroup for Unitary {
         gram.distance(&self.identity())
     }
     fn check_elem(&self, g: &ComplexMatrix) -> Result<(), Error> {
-        g.check("g", self.n, self.n)
+        g.check("y", self.n, self.n)
     }
     fn check_vector(&self, x: &ComplexMatrix) -> Result<(), Error> {
-        x.check("x", self.n, x.re.ncols())
+        x.check("y", self.n, x.re.ncols())
     }
     fn is_finite_vector(&self, x: &ComplexMatrix) -> bool {
         LinearSpace::is_finite(x)
