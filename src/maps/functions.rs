@@ -82,6 +82,8 @@ pub trait LogGroup: LieGroup {
 
 /// log(g): the u with exp(u) = g, the shortest one on rotations. Fresh storage.
 ///
+/// Of a unit quaternion q it is the logarithm of the rotation: exp(u) is q or −q, the one whose real part is not negative.
+///
 /// # Errors
 /// g is not in the group, or has no logarithm in the algebra: as [`so3::log`] and
 /// [`MatrixGroup::log`](crate::groups::MatrixGroup::log).

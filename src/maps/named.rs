@@ -35,19 +35,26 @@ pub struct MapInfo {
 pub enum Groups {
     /// Every group.
     All,
+    /// The groups of real matrices, and products of these: not S³, and not the complex U(n).
+    OfRealMatrices,
     /// The groups with an ordered basis of cheap factors.
     WithOrderedBasis,
 }
 
 impl Groups {
-    /// Does the map work on the group of this name, as [`LieAlgebra::name`](crate::LieAlgebra::name) gives it?
+    /// Does the map work on the group of this name, as [`LieAlgebra::name`](crate::LieAlgebra::name) gives it? U(n) and SU(n)
+    /// have one name as real and as complex matrices; the answer is that for real ones.
     pub fn contain(self, group: &str) -> bool {
         let is_listed = |part: &str| {
             let family = part.split('(').next().unwrap_or_default();
             // SO(p,q) is no SO(n).
-            !part.contains(',') && ["SO", "GL", "Sp", "SE", "T"].contains(&family)
+            !part.contains(',') && ["SO", "GL", "SL", "Sp", "SE", "SE2", "T"].contains(&family)
         };
-        self == Groups::All || group.split(" × ").all(is_listed)
+        match self {
+            Groups::All => true,
+            Groups::OfRealMatrices => group.split(" × ").all(|part| !part.starts_with("S³")),
+            Groups::WithOrderedBasis => group.split(" × ").all(is_listed),
+        }
     }
 }
 
@@ -55,7 +62,8 @@ impl fmt::Display for Groups {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Groups::All => "all",
-            Groups::WithOrderedBasis => "SO(n), GL(n), Sp(2m), SE(3), T(n)",
+            Groups::OfRealMatrices => "all but unit quaternions and ideal fluids",
+            Groups::WithOrderedBasis => "SO(n), GL(n), SL(n), Sp(2m), SE(3), SE2(3), T(n)",
         })
     }
 }
@@ -93,7 +101,7 @@ pub const MAPS: &[MapInfo] = &[
     MapInfo {
         name: "pade22",
         summary: "Padé map (𝟙 − u/2 + u²/12)⁻¹(𝟙 + u/2 + u²/12), order 4 of exp",
-        groups: Groups::All,
+        groups: Groups::OfRealMatrices,
         odd: false,
         map: NamedMap::Pade22(Pade22),
     },
@@ -292,13 +300,15 @@ impl FromName for NamedMap {
 
 impl FromName for ExpOrCay {
     fn named(name: &str, q: Option<usize>) -> Result<Self, Error> {
-        let (what, why) = match NamedMap::named(name, q)? {
+        let (what, with, why) = match NamedMap::named(name, q)? {
             NamedMap::Exp(exp) => return Ok(ExpOrCay::Exp(exp)),
             NamedMap::Cay(cay) => return Ok(ExpOrCay::Cay(cay)),
-            NamedMap::Truncated(_) => ("q", "dexp⁻¹ is taken to rounding here; leave q out"),
-            _ => ("map", "the group of this problem has the maps exp and cay"),
+            NamedMap::Truncated(_) => {
+                ("q", format!("map `{name}`"), "dexp⁻¹ is taken to rounding here; leave q out")
+            }
+            _ => ("map", format!("`{name}`"), "the group of this problem has the maps exp and cay"),
         };
-        Err(Error::Unsupported { what, with: format!("map `{name}`"), why })
+        Err(Error::Unsupported { what, with, why })
     }
 }
 
