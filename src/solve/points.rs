@@ -237,6 +237,11 @@ fn checked_start<P: Problem>(
     }
     action.check_member(group, y)?;
     if let Some(tolerance) = tolerance {
+        let size = y.size();
+        if !(size * size).all_below(f64::INFINITY) {
+            let expected = "a size below 1e154, whose square is a number: take other units";
+            return Err(Error::out_of_range("‖y‖", power_of_two_above(size), expected));
+        }
         tolerance.check_rounding::<ScalarOf<P>>()?;
         let mut parts = tolerance.scales();
         let none = action.error_ratio(group, &group.zero(), y, &mut parts);

@@ -37,7 +37,7 @@ const COSINES: [f64; 9] = [
 ];
 
 /// cos(πj/16).
-fn cosine(j: usize) -> f64 {
+const fn cosine(j: usize) -> f64 {
     match j % 32 {
         j @ ..=8 => COSINES[j],
         j @ ..=16 => -COSINES[16 - j],
@@ -52,7 +52,7 @@ pub(super) fn place(j: usize) -> f64 {
 }
 
 /// The distance of the numbers of two points of a level.
-pub(super) fn stride(level: usize) -> usize {
+pub(super) const fn stride(level: usize) -> usize {
     (MOST - 1) / DEGREES[level]
 }
 
@@ -77,8 +77,42 @@ pub(super) fn noise_of(values: &[f64; MOST]) -> f64 {
 /// Numbers for polynomials of degree 16 at most.
 type Numbers = [f64; MOST];
 
+/// For each degree the Chebyshev coefficients of the polynomials that are 1 at one point and 0 at the others.
+static CHEBYSHEV: [[Numbers; MOST]; 3] = {
+    let mut all = [[[0.0; MOST]; MOST]; 3];
+    let mut level = 0;
+    while level < 3 {
+        let n = DEGREES[level];
+        let mut j = 0;
+        while j <= n {
+            let mut k = 0;
+            while k <= n {
+                let sign = if k % 2 == 0 { 1.0 } else { -1.0 };
+                let halves = if j == 0 || j == n { 0.5 } else { 1.0 }
+                    * if k == 0 || k == n { 0.5 } else { 1.0 };
+                all[level][j][k] = sign * halves * 2.0 * cosine(k * j * stride(level)) / n as f64;
+                k += 1;
+            }
+            j += 1;
+        }
+        level += 1;
+    }
+    all
+};
+
+/// Σ x_j row_j over the first N rows.
+fn sum_of_rows<const N: usize>(rows: &[Numbers; MOST], x: &Numbers) -> Numbers {
+    let mut sum = [0.0; MOST];
+    for (x, row) in x[..N].iter().zip(rows) {
+        for (sum, number) in sum[..N].iter_mut().zip(row) {
+            *sum += x * number;
+        }
+    }
+    sum
+}
+
 /// For each degree the Chebyshev polynomials in Bernstein's form, and the largest of those numbers.
-const BERNSTEIN: [([Numbers; MOST], Numbers); 3] = {
+static BERNSTEIN: [([Numbers; MOST], Numbers); 3] = {
     // Pascal's triangle.
     let mut choose = [[0i64; 33]; 33];
     let mut n = 0;
@@ -154,23 +188,18 @@ impl Proxy {
     /// of the values.
     pub(super) fn new(values: &Numbers, level: usize, noise: f64) -> Self {
         let (degree, stride) = (DEGREES[level], stride(level));
+        let mut at = [0.0; MOST];
+        at.iter_mut().zip(values.iter().step_by(stride)).for_each(|(at, value)| *at = *value);
         let (to_bernstein, largest) = &BERNSTEIN[level];
-        let (mut c, mut b) = ([0.0; MOST], [0.0; MOST]);
-        let mut rounding = noise;
-        for k in 0..=degree {
-            let mut sum = 0.0;
-            for j in 0..=degree {
-                let half = if j == 0 || j == degree { 0.5 } else { 1.0 };
-                sum += half * values[j * stride] * cosine(k * j * stride);
-            }
-            let sign = if k % 2 == 0 { 1.0 } else { -1.0 };
-            let half = if k == 0 || k == degree { 0.5 } else { 1.0 };
-            c[k] = 2.0 * sign * half * sum / degree as f64;
-            rounding += ROUNDING * c[k].abs() * largest[k];
-            for j in 0..=degree {
-                b[j] += c[k] * to_bernstein[k][j];
-            }
-        }
+        let apply = match level {
+            0 => sum_of_rows::<5>,
+            1 => sum_of_rows::<9>,
+            _ => sum_of_rows::<MOST>,
+        };
+        let c = apply(&CHEBYSHEV[level], &at);
+        let b = apply(to_bernstein, &c);
+        let terms = c.iter().zip(largest).map(|(c, largest)| c.abs() * largest);
+        let rounding = noise + ROUNDING * terms.sum::<f64>();
         let last = c[degree - 1].abs() + c[degree].abs();
         let far = last + rounding;
         let level = level_of(&c, level, rounding);

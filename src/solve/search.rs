@@ -153,8 +153,12 @@ impl Search {
         let Search { seen, span: [start, end], last, .. } = *self;
         let mut left = (start, seen.value);
         if seen.anew {
-            let t = start + A_LITTLE_LATER * (end - start);
-            let value = g(t)?;
+            // Later than start by some digits of it, also in a step as short as these.
+            let least = (4.0 * f64::EPSILON * start.abs()).copysign(end - start);
+            let later = A_LITTLE_LATER * (end - start);
+            let t = start + if later.abs() < least.abs() { least } else { later };
+            let is_within = (t - end) * (end - start) < 0.0;
+            let (t, value) = if is_within { (t, g(t)?) } else { (end, last) };
             // A zero at the very start of the run, and its direction.
             if self.first_step && left.1 == 0.0 && value != 0.0 && self.direction.has(value > 0.0) {
                 found(start, value > 0.0);
