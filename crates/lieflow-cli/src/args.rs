@@ -268,7 +268,7 @@ pub struct CompareArgs {
     /// Only these: names of methods, with parts where wanted, as in "rkmk dopri5 cay".
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub methods: Vec<String>,
-    /// The layers to run on: closed, general or both [default: the scene's].
+    /// The layers to run on: closed, general, or closed,general [default: the scene's].
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = layer)]
     pub layers: Vec<Layer>,
     /// Tolerances for the methods that choose their steps.

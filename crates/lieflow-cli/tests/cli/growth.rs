@@ -92,3 +92,49 @@ fn a_part_below_atol_is_told_to_leave_atol_out() {
     assert!(out.contains("rtol = 1e-14 alone, with atol = 0, would give about"), "{out}");
     assert!(!out.contains("small errors grow"), "{out}");
 }
+
+/// An oscillator by these numbers.
+fn oscillator(start: &str, field: &str, rest: &str) -> String {
+    told(&format!(
+        "[problem]\nkind = \"composed\"\n[[problem.parts]]\nname = \"x\"\nspace = \"numbers\"\nstart = {start}\n\
+         field = {field}\n{rest}\n"
+    ))
+}
+
+/// Rows once in a period: x is 0 at each, and its error is relative to what it is between them.
+#[test]
+fn a_part_that_returns_to_zero_at_each_row_has_its_digits() {
+    let out = told(
+        "[problem]\nkind = \"composed\"\n[[problem.parts]]\nname = \"x\"\nspace = \"numbers\"\nstart = [0]\n\
+         field = [\"v\"]\n[[problem.parts]]\nname = \"v\"\nspace = \"numbers\"\nstart = [1]\nfield = [\"-x\"]\n\
+         [time]\nt_span = [0, \"20*pi\"]\n[output]\ninterval = \"2*pi\"\n",
+    );
+    assert!(!out.contains("WARNING") && out.contains("digits are right"), "{out}");
+}
+
+/// Near a saddle small errors grow, and no pulse is passed over.
+#[test]
+fn growth_is_not_taken_for_a_pulse() {
+    let out =
+        oscillator("[1e-7, 0]", "[\"x2\", \"sin(x1)\"]", "[time]\nt_span = [0, 60]\nrtol = 1e-10");
+    assert!(!out.contains("pass over something short"), "{out}");
+}
+
+/// A pulse within a step of one size is looked for, too; and the default method, which passes over it, is not advised.
+#[test]
+fn a_pulse_within_a_step_of_one_size_is_told() {
+    let scene = |middle: f64| {
+        format!(
+            "[problem]\nkind = \"driven-body\"\ninertia = [1, 2, 3]\nomega_body = [0.1, 0.2, 0.3]\n\
+             parameters = {{a = {middle}, b = {}}}\n\
+             torque = [\"0\", \"10*(sign(t - a) - sign(t - b))\", \"0\"]\n[method]\nname = \"rkmk4\"\n\
+             [time]\nt_span = [0, 10]\ndt = 0.05\n",
+            middle + 0.01
+        )
+    };
+    for middle in [3.002, 3.005, 3.012, 3.025, 3.037] {
+        let out = told(&scene(middle));
+        assert!(out.contains("WARNING: "), "{middle}: {out}");
+        assert!(!out.contains("lieflow gives") && !out.contains("errors grow"), "{middle}: {out}");
+    }
+}

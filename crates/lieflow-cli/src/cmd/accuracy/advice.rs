@@ -1,5 +1,6 @@
 //! What is said of an inaccurate run, and the change that would help.
 
+use lieflow_model::problem::SHORT_STEPS;
 use lieflow_timing::cpu_seconds;
 
 use super::{Check, LONG, OWN, Way};
@@ -54,7 +55,8 @@ impl Check<'_> {
         let default = self.tried(Way { default: true, ..OWN }, &times);
         // Where high order and the least tolerance do not do, no step does.
         let is_hopeless = matches!(default, Some(None));
-        let default = default.flatten().map(|accuracy| accuracy.digits_in_words());
+        let default = default.flatten().filter(|_| !self.default_passes_over());
+        let default = default.map(|accuracy| accuracy.digits_in_words());
         let smaller = match is_hopeless {
             true if self.is_by_atol(worst.largest.absolute) => self.without_atol(&times),
             true => self.shorter_steps(&times),
@@ -77,19 +79,32 @@ impl Check<'_> {
             (None, None) if self.moved.get() > POOR => {
                 format!("No step is small enough: {SMALL_ERRORS_GROW}")
             }
-            (None, None) => format!(
-                "The default method, at its least tolerance, is not enough either: {SMALL_ERRORS_GROW}"
-            ),
+            (None, None) => "The default method, at its least tolerance, is not enough either. Where f has a jump or a short \
+                             pulse, steps must be shorter than it: h_max in [time]"
+                .into(),
         };
         let knots = if self.scene().passes_knots() { AT_KNOTS } else { "" };
         Some(format!("{wrong} {advice}.{knots}"))
     }
 
+    /// Does the run of a scene that names no method pass over something short? Its end is another one in short steps.
+    fn default_passes_over(&self) -> bool {
+        let [t0, end] = self.run.t_span;
+        let short = (end - t0).abs() / SHORT_STEPS as f64;
+        let ends = [None, Some(short)].map(|largest| {
+            let way = Way { default: true, largest, ..OWN };
+            self.rows_at(way, &[end]).ok().and_then(|(mut rows, _)| rows.pop())
+        });
+        let [Some(one), Some(other)] = ends else { return false };
+        self.ends_apart([[&one, &other]].into_iter()).relative() > POOR
+    }
+
     /// A limit of the step size that would do at these times, and the digits that it gives.
     fn shorter_steps(&self, times: &[f64]) -> Option<String> {
-        let short = self.short_step()?;
-        let accuracy = self.tried(Way { largest: Some(short), ..OWN }, times)??;
-        Some(format!("h_max = {} would give {}", number(short), accuracy.digits_in_words()))
+        let (short, way) = self.short_steps()?;
+        let accuracy = self.tried(way, times)??;
+        let limit = self.limit_of_steps(short);
+        Some(format!("{limit} would give {}", accuracy.digits_in_words()))
     }
 
     /// Could the absolute tolerance alone make this error?

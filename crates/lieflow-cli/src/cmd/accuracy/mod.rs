@@ -1,6 +1,7 @@
 //! How right the rows of a run are, and what would do where they are wrong.
 
 mod advice;
+mod sizes;
 mod unseen;
 
 use std::cell::Cell;
@@ -18,6 +19,7 @@ use lieflow_model::scene::{Scene, default_tolerances};
 use lieflow_model::schema::{Component, Observable, Row};
 
 use self::advice::POOR;
+use self::sizes::size;
 use super::apart::{
     Apart, Beside, ColumnApart, Gap, Largest, Limits, Size, ZerosApart, derived_of, norm, parts_of,
 };
@@ -169,7 +171,10 @@ impl<'a> Check<'a> {
         sample.extend((sample.last() != Some(&t)).then_some(t));
         let last = rows.ends().map_or(Vec::new(), |[_, (_, row)]| row.numbers().into());
         let (deadline, moved) = (Cell::new(None), Cell::new(0.0));
-        Check { watch, run, own, ended_by_event, is_exact, sample, last, deadline, moved }
+        let mut check =
+            Check { watch, run, own, ended_by_event, is_exact, sample, last, deadline, moved };
+        check.see_sizes_between();
+        check
     }
 
     /// Is the exact motion known?
@@ -541,16 +546,6 @@ impl<'a> Check<'a> {
         // Two runs may have the same rounding.
         Some((moved.max(accuracy.relative()) <= POOR).then_some(accuracy))
     }
-}
-
-/// The size of a part in these rows.
-fn size((observable, part): (&Observable, &Component), rows: &RowSample<'_>) -> Size {
-    let norm = |row: Row<'_>| norm(&row[observable][part.columns.clone()]);
-    let mut sizes: Vec<f64> = rows.rows().map(|(_, row)| norm(row)).collect();
-    let ends = rows.ends().map_or([0.0; 2], |ends| ends.map(|(_, row)| norm(row)));
-    sizes.sort_by(f64::total_cmp);
-    let middle = sizes.get(sizes.len() / 2).copied().unwrap_or(0.0);
-    Size { largest: ends[0].max(ends[1]).max(middle), middle }
 }
 
 /// Keeps the rows of a run, and stops the run when its time is up.

@@ -14,6 +14,8 @@ use crate::output::{Accuracy, FoundBy, number, rough};
 const MISJUDGED: f64 = 3.0;
 /// A run in short steps that ends this many estimated errors of the end away has found something that two runs did not see.
 const PASSED_OVER: f64 = 30.0;
+/// Another run in half of these short steps differs by less than this part of it where it was something short.
+const RESOLVED: f64 = 1e-3;
 /// The CPU time of a run below this many seconds says little of that of another. Then a run in short steps is begun in any
 /// case, and ends at its deadline.
 const BRIEF: f64 = 0.015;
@@ -27,11 +29,21 @@ const OF_CHANGE: f64 = 1.0 / 16.0;
 const GROWN: f64 = 1e-6;
 
 impl Check<'_> {
-    /// The size of short steps, where steps are chosen by their error and may be larger.
-    pub(super) fn short_step(&self) -> Option<f64> {
+    /// A run in short steps, and their size, where those of the run are larger.
+    pub(super) fn short_steps(&self) -> Option<(f64, Way)> {
         let [t0, end] = self.run.t_span;
         let short = (end - t0).abs() / SHORT_STEPS as f64;
-        (self.scene().tolerances().is_some() && 2.0 * short < self.own.largest).then_some(short)
+        let way = match self.scene().tolerances() {
+            Some(_) => Way { largest: Some(short), ..OWN },
+            None => Way { factor: short / self.scene().grid.h().abs(), ..OWN },
+        };
+        (2.0 * short < self.own.largest).then_some((short, way))
+    }
+
+    /// The setting that limits the steps to this size.
+    pub(super) fn limit_of_steps(&self, size: f64) -> String {
+        let name = if self.scene().tolerances().is_some() { "h_max" } else { "dt" };
+        format!("{name} = {}", number(size))
     }
 
     /// The distance of the last row from that of a run in short steps, with a warning, where the steps of two runs that are
@@ -43,11 +55,11 @@ impl Check<'_> {
         if self.is_exact || self.ended_by_event {
             return None;
         }
-        let short = self.short_step()?;
+        let (short, way) = self.short_steps()?;
         let most = self.time_to_search(seconds)?;
         // The estimate of its time may be wrong: within a pulse f may be dear, or steps small.
         self.deadline.set(Some(cpu_seconds() + most * MISJUDGED));
-        let found = self.rows_at(Way { largest: Some(short), ..OWN }, &[end]);
+        let found = self.rows_at(way, &[end]);
         self.deadline.set(None);
         let (rows, taken) = found.ok()?;
         let pair = rows.first().map(|row| (end, [&self.last[..], &row[..]]));
@@ -58,11 +70,23 @@ impl Check<'_> {
         let is_far = found.relative() > PASSED_OVER * known.at_end().max(rounding);
         is_far.then(|| {
             let name = found.worst().map_or("", |worst| &worst.name);
-            let [short, size] = [short, self.own.largest].map(number);
-            let warning = format!(
-                "in steps of at most {short} `{name}` ends elsewhere: the steps of this run, of up to {size}, pass over \
-                 something short, such as a pulse or a jump. Give h_max = {short} in [time], or less"
-            );
+            let limit = self.limit_of_steps(short);
+            let elsewhere =
+                format!("in steps of at most {} `{name}` ends elsewhere", number(short));
+            // Where their error chooses the steps, shorter ones do not move an end that short ones have found.
+            let half = way.largest.map(|h| Way { largest: Some(0.5 * h), ..way });
+            let moved = half.and_then(|half| self.rows_at(half, &[end]).ok()?.0.pop());
+            let moved = moved.map_or(0.0, |other| {
+                self.ends_apart([[&rows[0], &other]].into_iter()).relative()
+            });
+            let warning = match moved < RESOLVED * found.relative() {
+                true => format!(
+                    "{elsewhere}: the steps of this run, of up to {}, pass over something short, such as a pulse or a jump. \
+                     Give {limit} in [time], or less",
+                    number(self.own.largest)
+                ),
+                false => format!("{elsewhere}, and elsewhere again in half of these: small errors grow fast here"),
+            };
             (found, warning)
         })
     }
@@ -88,14 +112,13 @@ impl Check<'_> {
         }
         // One of the two may have passed over a short pulse. Runs in short steps do not.
         let in_short_steps = || {
-            let short = Way { largest: Some(self.short_step()?), ..OWN };
+            let (_, short) = self.short_steps()?;
             let most = MISJUDGED * self.time_to_search(seconds)?;
             let ends = [0.0, LAST_DIGITS].map(|change| self.changed_end(short, change, most));
             let [Some(one), Some(other)] = ends else { return None };
             Some(self.ends_apart([[&one, &other]].into_iter()))
         };
-        let other = in_short_steps().filter(|other| other.relative() < moved.relative());
-        Some(other.unwrap_or(moved))
+        Some(in_short_steps().filter(|other| other.relative() <= GROWN).unwrap_or(moved))
     }
 
     /// How long a run in short steps may take.
@@ -121,7 +144,10 @@ impl Check<'_> {
     }
 
     /// The distances of last rows.
-    fn ends_apart<'r>(&self, pairs: impl Iterator<Item = [&'r Vec<f64>; 2]>) -> Accuracy {
+    pub(super) fn ends_apart<'r>(
+        &self,
+        pairs: impl Iterator<Item = [&'r Vec<f64>; 2]>,
+    ) -> Accuracy {
         let clock = Instant::now();
         let pairs = pairs.map(|pair| (self.end(), pair.map(|row| &row[..])));
         let apart = Apart::of_rows(self.watch, &self.run.sizes, pairs);
