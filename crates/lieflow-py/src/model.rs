@@ -56,12 +56,12 @@ fn shape_words(shape: Shape) -> String {
 fn shape_type(shape: Shape) -> String {
     match shape {
         Shape::Bool => "bool".into(),
-        Shape::Whole => "int".into(),
-        Shape::Number => "float".into(),
-        Shape::Numbers(_) | Shape::List | Shape::Rows | Shape::Square(_) => "ArrayLike".into(),
+        Shape::Whole => "int | str".into(),
+        Shape::Number => "float | str".into(),
+        Shape::Numbers(_) | Shape::List | Shape::Rows | Shape::Square(_) => "Numbers".into(),
         Shape::Text => "str".into(),
         Shape::Formula => "str | float".into(),
-        Shape::Formulas => "str | float | Sequence[str | float]".into(),
+        Shape::Formulas => "str | float | Numbers".into(),
         Shape::ListOf(_) => "Sequence[Any]".into(),
         Shape::TableOf(_) | Shape::Keys(_) => "Mapping[str, Any]".into(),
         Shape::Or(a, b) => format!("{} | {}", shape_type(*a), shape_type(*b)),

@@ -21,6 +21,8 @@ from ._result import Layout
 from ._unitary import ComplexState
 
 Array = NDArray[np.float64]
+# Numbers may be formulas of the parameters, as in ["5*deg", 0, "w"].
+Numbers = ArrayLike | Sequence[Any]
 COLUMNS: int
 
 class Problem:

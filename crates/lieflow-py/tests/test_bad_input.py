@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pickle
+
 import numpy as np
 import pytest
 
@@ -314,3 +316,53 @@ def test_the_error_of_a_first_step_from_rest_is_seen():
     run = lf.solve_ivp(lambda t, y: [0, 0, t**power], (0, 1), np.eye(3), group="SO(3)", frame="space", rtol=rtol, atol=rtol)
     angle = np.arctan2(run.y_end[1, 0], run.y_end[0, 0])
     assert abs(angle - 1 / (power + 1)) < 20 * run.estimate_error().y
+
+
+def test_constants_of_one_name_are_refused():
+    for parameters in ({"J": np.zeros((2, 2)), "J1": [5.0, 6.0]}, {"k": np.arange(12.0), "k1": [1.0, 2.0]}):
+        with pytest.raises(lf.ArgumentError, match="twice"):
+            lf.solve_ivp(lf.Field("SO(3)", ["0", "0", "1"], **parameters), (0, 1), np.eye(3), frame="space")
+
+
+def test_entries_of_large_matrices_have_names():
+    y = np.eye(11)
+    rows = [[f"{0.1 * (j - i)}*J1_11" for j in range(11)] for i in range(11)]
+    run = lf.solve_ivp(lf.Field("SO(11)", rows, J=np.ones((11, 11))), (0, 1), y, frame="space", events="y1_11 - 0.5*y11_1")
+    assert run.success and np.abs(run.y[-1].T @ run.y[-1] - y).max() < 1e-12
+    columns = run.to_dataframe().columns
+    assert columns.is_unique and "y1_11" in columns and "y11_1" in columns
+
+
+def test_the_end_of_a_run_is_not_edited():
+    body = lf.RigidBody(inertia=[1, 2, 3], omega_body=[0.1, 1, 0.2])
+    end = lf.solve_ivp(body, (0, 1)).y_end
+    name = next(iter(end))
+    with pytest.raises(TypeError, match="y_end"):
+        end[name] = np.zeros(3)
+    with pytest.raises(ValueError, match="read-only"):
+        end[name][...] = 0.0
+    again = pickle.loads(pickle.dumps(end))
+    assert all((again[name] == end[name]).all() for name in end)
+    assert lf.solve_ivp(body, (1, 2), y0=again).success
+
+
+def test_states_of_two_qubits():
+    h = np.diag([1.0, 2.0, 3.0, 4.0]).astype(complex)
+    start = np.array([1, 1j, 0, 0]) / np.sqrt(2)
+    exact = np.exp(-1j * np.diag(h)) * start
+    for group in ("U(4)", lf.U(4)):
+        for y0 in (start, list(start)):
+            run = lf.solve_ivp(lambda t, y: -1j * h, (0, 1), y0, group=group, action="linear", rtol=1e-10, atol=1e-12)
+            assert np.abs(run.y[-1] - exact).max() < 1e-9
+    quaternion = lf.solve_ivp(lambda t, y: [0, 0, 1.0], (0, 1), [1, 0, 0, 0], group="SU(2)", frame="space")
+    assert quaternion.y.shape[1:] == (4,)
+
+
+def test_an_event_at_the_start_in_a_short_step():
+    turn = lambda t, y: [0, 0, 1.0]
+    for t0, step in ((1.7e9, 1e-3), (1.7e9, 1e-5), (1.0, 1e-13)):
+        run = lf.solve_ivp(
+            turn, (t0, t0 + 1), np.eye(3), group="SO(3)", frame="space", rtol=1e-9, first_step=step,
+            events=[lambda t, y: t - t0, lambda t, y: y[1, 0]],
+        )
+        assert [list(times) for times in run.t_events] == [[t0], [t0]], (t0, step)

@@ -111,7 +111,8 @@ pub(super) fn numbered(letter: &str, n: usize) -> Vec<String> {
 
 /// The columns x11, …, xnn, on and above the diagonal, row by row.
 pub(super) fn upper_columns(letter: &str, n: usize) -> Vec<String> {
-    (1..=n).flat_map(|i| (i..=n).map(move |j| format!("{letter}{i}{j}"))).collect()
+    let between = if n > 10 { "_" } else { "" };
+    (1..=n).flat_map(|i| (i..=n).map(move |j| format!("{letter}{i}{between}{j}"))).collect()
 }
 
 /// The entries, row by row.

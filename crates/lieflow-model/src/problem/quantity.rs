@@ -7,9 +7,10 @@ use super::kind::{Kept, QuantityInfo};
 use super::system::{PointOf, System};
 use crate::reader::Refusal;
 
-/// The columns x11, …, xnk, row by row.
+/// The columns x11, …, xnk, row by row; x1_1, … where a dimension is above 10.
 pub(crate) fn row_columns(letter: &str, n: usize, k: usize) -> Vec<String> {
-    (1..=n).flat_map(|i| (1..=k).map(move |j| format!("{letter}{i}{j}"))).collect()
+    let between = if n.max(k) > 10 { "_" } else { "" };
+    (1..=n).flat_map(|i| (1..=k).map(move |j| format!("{letter}{i}{between}{j}"))).collect()
 }
 
 /// The columns of a quantity.

@@ -42,12 +42,31 @@ class Quantities(dict[str, NDArray[Any]]):
         return (Quantities, (dict(self),))
 
 
+def numbered(name: str, shape: tuple[int, ...]) -> list[str]:
+    """Return the names of the numbers of an array, from 1: ``y12``, and ``y1_12`` where a dimension is above 10."""
+    between = "_" if len(shape) > 1 and max(shape) > 10 else ""
+    return [name + between.join(str(i + 1) for i in place) for place in np.ndindex(*shape)]
+
+
 class State(Quantities):
-    """The quantities at the end of a run of a problem. Another run goes on from them: ``y0=result.y_end``."""
+    """The quantities at the end of a run of a problem. Another run goes on from them: ``y0=result.y_end``.
+
+    They cannot be changed: the numbers of the point stand behind them.
+    """
 
     def __init__(self, quantities: dict[str, NDArray[Any]], numbers: NDArray[np.float64], of: tuple[str, str, str]) -> None:
         super().__init__(quantities)
+        for array in self.values():
+            array.setflags(write=False)
         self._numbers, self._of = numbers, of
+
+    def _refuse(self, *_: Any, **__: Any) -> Any:
+        raise TypeError(
+            "y_end: it cannot be changed; give y0 the numbers of a state, as lieflow.Integrator.state has them, or make a "
+            "problem with another start by replace()"
+        )
+
+    __setitem__ = __delitem__ = __ior__ = update = pop = popitem = clear = setdefault = _refuse
 
     def __reduce__(self) -> tuple[Any, ...]:
         return (State, (dict(self), self._numbers, self._of))
@@ -257,7 +276,7 @@ class Parts:
         """Return the names of the numbers of a point in formulas."""
         names: list[str] = []
         for name, (_, _, shape) in self._places.items():
-            names += [name + "".join(str(i + 1) for i in place) for place in np.ndindex(*shape)]
+            names += numbered(name, shape)
         return names
 
     def __repr__(self) -> str:
@@ -341,10 +360,9 @@ class Field:
         if isinstance(self.group, Parts):
             columns = self.group.columns()
         elif is_complex:
-            indices = ["".join(str(i + 1) for i in place) for place in np.ndindex(*shape[:-1])]
-            columns = [part + index for index in indices for part in ("re", "im")]
+            columns = [part + index for index in numbered("", shape[:-1]) for part in ("re", "im")]
         else:
-            columns = [self.y + "".join(str(i + 1) for i in place) for place in np.ndindex(*shape)]
+            columns = numbered(self.y, shape)
         if isinstance(self.group, Parts) and value != ():
             if not isinstance(texts, Mapping) or set(texts) != set(self.group.spaces):
                 raise ArgumentError("field", repr(texts), f"a dict with formulas of {', '.join(self.group.spaces)}")
@@ -360,8 +378,10 @@ class Field:
         constants: dict[str, float] = {}
         for name, x in self.parameters.items():
             array = real(name, x)
-            for place in np.ndindex(*array.shape):
-                constants[name + "".join(str(i + 1) for i in place)] = float(array[place])
+            for constant, number in zip(numbered(name, array.shape), array.ravel()):
+                if constant in constants:
+                    raise ArgumentError(name, f"the constant {constant!r} twice", "another name")
+                constants[constant] = float(number)
         keys["parameters"] = constants
         if self.let:
             keys["let"] = {name: list(x) if isinstance(x, tuple) else x for name, x in self.let.items()}

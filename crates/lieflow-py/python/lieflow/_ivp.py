@@ -17,7 +17,7 @@ from ._fields import CFunction, Field, Parts, Quantities, Samples, State, addres
 from ._groups import Group
 from ._problems import Problem
 from ._result import Layout, OdeSolution, Result, warn_of_events
-from ._unitary import ComplexPoints, ComplexState, Unitary, is_unitary_name
+from ._unitary import ComplexPoints, ComplexState, Unitary, is_su2, is_unitary_name
 
 __all__ = ["Event", "solve_ivp"]
 
@@ -221,7 +221,7 @@ class Ready:
         self.layout: Parts | ComplexPoints | None = self.parts
         if isinstance(group, Unitary) or isinstance(group, str) and is_unitary_name(group):
             # SU(2) is the group of unit quaternions, too.
-            if isinstance(group, Unitary) or np.shape(y0) != (4,):
+            if isinstance(group, Unitary) or np.shape(y0) != (4,) or not is_su2(group):
                 self.layout = ComplexPoints()
         start = real("y0", y0) if self.layout is None else self.layout.join("y0", y0, True)
         name: Any = group
@@ -321,7 +321,7 @@ def _joined(join: Callable[..., Array], name: str, t: float, *x: Any) -> Array:
 
 def solve_ivp(
     fun: Callable[..., Any] | CFunction | Field | Samples | Problem,
-    t_span: Sequence[float],
+    t_span: Sequence[float] | NDArray[Any],
     y0: ArrayLike | dict[str, Any] | None = None,
     *,
     method: str | None = None,

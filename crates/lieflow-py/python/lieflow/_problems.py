@@ -21,6 +21,8 @@ from ._unitary import ComplexState, complex_numbers
 from ._values import is_complex, part, plain
 
 Array = NDArray[np.float64]
+#: Numbers may be formulas of the parameters, as in ``["5*deg", 0, "w"]``.
+Numbers = ArrayLike | Sequence[Any]
 
 #: A quantity with more columns is given only when it is asked for.
 COLUMNS = 64

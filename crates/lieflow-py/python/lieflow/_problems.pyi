@@ -12,6 +12,8 @@ from ._result import Layout
 from ._unitary import ComplexState
 
 Array = NDArray[np.float64]
+# Numbers may be formulas of the parameters, as in ["5*deg", 0, "w"].
+Numbers = ArrayLike | Sequence[Any]
 COLUMNS: int
 
 class Problem:
@@ -64,7 +66,7 @@ class BeamLine(Problem):
         self,
         *,
         elements: Sequence[Any],
-        particle: ArrayLike,
+        particle: Numbers,
         parameters: Mapping[str, Any] | None = None,
     ) -> None: ...
 
@@ -86,17 +88,17 @@ class DensityMatrix(Problem):
         *,
         hamiltonian: Sequence[Any] | None = None,
         hamiltonian_imaginary: Sequence[Any] | None = None,
-        energies: ArrayLike | None = None,
-        coupling: ArrayLike | None = None,
-        coupling_imaginary: ArrayLike | None = None,
-        frequency: float | None = None,
-        phase: float | None = None,
-        pulse: ArrayLike | None = None,
-        hbar: float | None = None,
-        density: ArrayLike | None = None,
-        density_imaginary: ArrayLike | None = None,
-        amplitudes: ArrayLike | None = None,
-        amplitudes_imaginary: ArrayLike | None = None,
+        energies: Numbers | None = None,
+        coupling: Numbers | None = None,
+        coupling_imaginary: Numbers | None = None,
+        frequency: float | str | None = None,
+        phase: float | str | None = None,
+        pulse: Numbers | None = None,
+        hbar: float | str | None = None,
+        density: Numbers | None = None,
+        density_imaginary: Numbers | None = None,
+        amplitudes: Numbers | None = None,
+        amplitudes_imaginary: Numbers | None = None,
         samples: Samples | str | None = None,
         interpolation: str | None = None,
         let: Mapping[str, Any] | None = None,
@@ -107,8 +109,8 @@ class DoubleBracket(Problem):
     def __init__(
         self,
         *,
-        matrix: ArrayLike,
-        order: ArrayLike,
+        matrix: Numbers,
+        order: Numbers,
         parameters: Mapping[str, Any] | None = None,
     ) -> None: ...
 
@@ -116,23 +118,23 @@ class DrivenBody(Problem):
     def __init__(
         self,
         *,
-        inertia: ArrayLike | ArrayLike | None = None,
-        inverse_inertia: ArrayLike | None = None,
+        inertia: Numbers | Numbers | None = None,
+        inverse_inertia: Numbers | None = None,
         shape: Mapping[str, Any] | None = None,
-        omega_body: ArrayLike | None = None,
-        momentum_body: ArrayLike | None = None,
-        omega_space: ArrayLike | None = None,
-        momentum_space: ArrayLike | None = None,
-        attitude: ArrayLike | None = None,
-        quaternion: ArrayLike | None = None,
+        omega_body: Numbers | None = None,
+        momentum_body: Numbers | None = None,
+        omega_space: Numbers | None = None,
+        momentum_space: Numbers | None = None,
+        attitude: Numbers | None = None,
+        quaternion: Numbers | None = None,
         euler: Mapping[str, Any] | None = None,
         fixed: Mapping[str, Any] | None = None,
-        weight: ArrayLike | None = None,
-        thruster: ArrayLike | None = None,
-        damping: float | None = None,
-        control: ArrayLike | None = None,
-        torque: str | float | Sequence[str | float] | None = None,
-        torque_space: str | float | Sequence[str | float] | None = None,
+        weight: Numbers | None = None,
+        thruster: Numbers | None = None,
+        damping: float | str | None = None,
+        control: Numbers | None = None,
+        torque: str | float | Numbers | None = None,
+        torque_space: str | float | Numbers | None = None,
         samples: Samples | str | None = None,
         interpolation: str | None = None,
         let: Mapping[str, Any] | None = None,
@@ -145,8 +147,8 @@ class Euler(Problem):
         *,
         algebra: str,
         hamiltonian: str | float | None = None,
-        inverse_inertia: ArrayLike | None = None,
-        momentum: ArrayLike | ArrayLike,
+        inverse_inertia: Numbers | None = None,
+        momentum: Numbers | Numbers,
         let: Mapping[str, Any] | None = None,
         parameters: Mapping[str, Any] | None = None,
     ) -> None: ...
@@ -156,7 +158,7 @@ class Fluid(Problem):
         self,
         *,
         surface: str,
-        n: int,
+        n: int | str,
         random: Mapping[str, Any] | None = None,
         jets: Sequence[Any] | None = None,
         modes: Sequence[Any] | None = None,
@@ -168,19 +170,19 @@ class HeavyTop(Problem):
     def __init__(
         self,
         *,
-        inertia: ArrayLike | ArrayLike | None = None,
-        inverse_inertia: ArrayLike | None = None,
+        inertia: Numbers | Numbers | None = None,
+        inverse_inertia: Numbers | None = None,
         shape: Mapping[str, Any] | None = None,
-        omega_body: ArrayLike | None = None,
-        momentum_body: ArrayLike | None = None,
-        omega_space: ArrayLike | None = None,
-        momentum_space: ArrayLike | None = None,
-        attitude: ArrayLike | None = None,
-        quaternion: ArrayLike | None = None,
+        omega_body: Numbers | None = None,
+        momentum_body: Numbers | None = None,
+        omega_space: Numbers | None = None,
+        momentum_space: Numbers | None = None,
+        attitude: Numbers | None = None,
+        quaternion: Numbers | None = None,
         euler: Mapping[str, Any] | None = None,
         fixed: Mapping[str, Any] | None = None,
-        weight: ArrayLike,
-        vertical: ArrayLike | None = None,
+        weight: Numbers,
+        vertical: Numbers | None = None,
         parameters: Mapping[str, Any] | None = None,
     ) -> None: ...
 
@@ -188,9 +190,9 @@ class Hill(Problem):
     def __init__(
         self,
         *,
-        a: ArrayLike,
-        q: ArrayLike,
-        period: float,
+        a: Numbers,
+        q: Numbers,
+        period: float | str,
         parameters: Mapping[str, Any] | None = None,
     ) -> None: ...
 
@@ -198,10 +200,10 @@ class Kirchhoff(Problem):
     def __init__(
         self,
         *,
-        inertia: ArrayLike,
-        mass: ArrayLike,
-        angular_momentum: ArrayLike,
-        linear_momentum: ArrayLike,
+        inertia: Numbers,
+        mass: Numbers,
+        angular_momentum: Numbers,
+        linear_momentum: Numbers,
         parameters: Mapping[str, Any] | None = None,
     ) -> None: ...
 
@@ -209,10 +211,10 @@ class Lorentz(Problem):
     def __init__(
         self,
         *,
-        charge_to_mass: float,
-        electric: ArrayLike,
-        magnetic: ArrayLike,
-        velocity: ArrayLike,
+        charge_to_mass: float | str,
+        electric: Numbers,
+        magnetic: Numbers,
+        velocity: Numbers,
         parameters: Mapping[str, Any] | None = None,
     ) -> None: ...
 
@@ -220,9 +222,9 @@ class Lyapunov(Problem):
     def __init__(
         self,
         *,
-        x: ArrayLike,
+        x: Numbers,
         variables: Sequence[Any] | None = None,
-        field: str | float | Sequence[str | float],
+        field: str | float | Numbers,
         let: Mapping[str, Any] | None = None,
         samples: Samples | str | None = None,
         interpolation: str | None = None,
@@ -233,8 +235,8 @@ class Mathieu(Problem):
     def __init__(
         self,
         *,
-        a: float,
-        q: float,
+        a: float | str,
+        q: float | str,
         parameters: Mapping[str, Any] | None = None,
     ) -> None: ...
 
@@ -246,8 +248,8 @@ class MatrixOde(Problem):
         action: str | None = None,
         field: Sequence[Any],
         field_imaginary: Sequence[Any] | None = None,
-        start: ArrayLike | None = None,
-        start_imaginary: ArrayLike | None = None,
+        start: Numbers | None = None,
+        start_imaginary: Numbers | None = None,
         samples: Samples | str | None = None,
         interpolation: str | None = None,
         let: Mapping[str, Any] | None = None,
@@ -258,8 +260,8 @@ class Oja(Problem):
     def __init__(
         self,
         *,
-        a: ArrayLike,
-        x: ArrayLike,
+        a: Numbers,
+        x: Numbers,
         parameters: Mapping[str, Any] | None = None,
     ) -> None: ...
 
@@ -267,7 +269,7 @@ class QrFlow(Problem):
     def __init__(
         self,
         *,
-        matrix: ArrayLike,
+        matrix: Numbers,
         parameters: Mapping[str, Any] | None = None,
     ) -> None: ...
 
@@ -275,10 +277,10 @@ class Riccati(Problem):
     def __init__(
         self,
         *,
-        c: ArrayLike,
-        d: ArrayLike | None = None,
-        b: ArrayLike,
-        p: ArrayLike,
+        c: Numbers,
+        d: Numbers | None = None,
+        b: Numbers,
+        p: Numbers,
         parameters: Mapping[str, Any] | None = None,
     ) -> None: ...
 
@@ -294,15 +296,15 @@ class RigidBody(Problem):
     def __init__(
         self,
         *,
-        inertia: ArrayLike | ArrayLike | None = None,
-        inverse_inertia: ArrayLike | None = None,
+        inertia: Numbers | Numbers | None = None,
+        inverse_inertia: Numbers | None = None,
         shape: Mapping[str, Any] | None = None,
-        omega_body: ArrayLike | None = None,
-        momentum_body: ArrayLike | None = None,
-        omega_space: ArrayLike | None = None,
-        momentum_space: ArrayLike | None = None,
-        attitude: ArrayLike | None = None,
-        quaternion: ArrayLike | None = None,
+        omega_body: Numbers | None = None,
+        momentum_body: Numbers | None = None,
+        omega_space: Numbers | None = None,
+        momentum_space: Numbers | None = None,
+        attitude: Numbers | None = None,
+        quaternion: Numbers | None = None,
         euler: Mapping[str, Any] | None = None,
         fixed: Mapping[str, Any] | None = None,
         parameters: Mapping[str, Any] | None = None,
@@ -312,9 +314,9 @@ class RigidBodyN(Problem):
     def __init__(
         self,
         *,
-        mass_moments: ArrayLike | None = None,
-        inertia: ArrayLike | None = None,
-        momentum: ArrayLike,
+        mass_moments: Numbers | None = None,
+        inertia: Numbers | None = None,
+        momentum: Numbers,
         parameters: Mapping[str, Any] | None = None,
     ) -> None: ...
 
@@ -322,11 +324,11 @@ class RigidMotion(Problem):
     def __init__(
         self,
         *,
-        omega: str | float | Sequence[str | float],
-        velocity: str | float | Sequence[str | float],
+        omega: str | float | Numbers,
+        velocity: str | float | Numbers,
         frame: str | None = None,
-        attitude: ArrayLike | None = None,
-        position: ArrayLike | None = None,
+        attitude: Numbers | None = None,
+        position: Numbers | None = None,
         samples: Samples | str | None = None,
         interpolation: str | None = None,
         let: Mapping[str, Any] | None = None,
@@ -339,15 +341,15 @@ class Schrodinger(Problem):
         *,
         hamiltonian: Sequence[Any] | None = None,
         hamiltonian_imaginary: Sequence[Any] | None = None,
-        energies: ArrayLike | None = None,
-        coupling: ArrayLike | None = None,
-        coupling_imaginary: ArrayLike | None = None,
-        frequency: float | None = None,
-        phase: float | None = None,
-        pulse: ArrayLike | None = None,
-        hbar: float | None = None,
-        amplitudes: ArrayLike,
-        amplitudes_imaginary: ArrayLike | None = None,
+        energies: Numbers | None = None,
+        coupling: Numbers | None = None,
+        coupling_imaginary: Numbers | None = None,
+        frequency: float | str | None = None,
+        phase: float | str | None = None,
+        pulse: Numbers | None = None,
+        hbar: float | str | None = None,
+        amplitudes: Numbers,
+        amplitudes_imaginary: Numbers | None = None,
         samples: Samples | str | None = None,
         interpolation: str | None = None,
         let: Mapping[str, Any] | None = None,
@@ -358,9 +360,9 @@ class SphericalPendulum(Problem):
     def __init__(
         self,
         *,
-        gravity_over_length: float,
-        direction: ArrayLike,
-        velocity: ArrayLike,
+        gravity_over_length: float | str,
+        direction: Numbers,
+        velocity: Numbers,
         parameters: Mapping[str, Any] | None = None,
     ) -> None: ...
 
@@ -368,9 +370,9 @@ class Spin(Problem):
     def __init__(
         self,
         *,
-        field: ArrayLike,
-        rate: float,
-        moment: ArrayLike,
+        field: Numbers,
+        rate: float | str,
+        moment: Numbers,
         parameters: Mapping[str, Any] | None = None,
     ) -> None: ...
 
@@ -381,11 +383,11 @@ class SpinChain(Problem):
         spins: Sequence[Any] | None = None,
         wave: Mapping[str, Any] | None = None,
         ring: bool | None = None,
-        exchange: str | float | Sequence[str | float] | None = None,
-        dm: str | float | Sequence[str | float] | None = None,
-        anisotropy: str | float | Sequence[str | float] | None = None,
-        field: str | float | Sequence[str | float] | None = None,
-        damping: float | None = None,
+        exchange: str | float | Numbers | None = None,
+        dm: str | float | Numbers | None = None,
+        anisotropy: str | float | Numbers | None = None,
+        field: str | float | Numbers | None = None,
+        damping: float | str | None = None,
         samples: Samples | str | None = None,
         interpolation: str | None = None,
         let: Mapping[str, Any] | None = None,
@@ -396,8 +398,8 @@ class Subspace(Problem):
     def __init__(
         self,
         *,
-        a: ArrayLike,
-        x: ArrayLike,
+        a: Numbers,
+        x: Numbers,
         parameters: Mapping[str, Any] | None = None,
     ) -> None: ...
 
@@ -405,9 +407,9 @@ class Toda(Problem):
     def __init__(
         self,
         *,
-        positions: ArrayLike | None = None,
-        momenta: ArrayLike | None = None,
-        matrix: ArrayLike | None = None,
+        positions: Numbers | None = None,
+        momenta: Numbers | None = None,
+        matrix: Numbers | None = None,
         parameters: Mapping[str, Any] | None = None,
     ) -> None: ...
 

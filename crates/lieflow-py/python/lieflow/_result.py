@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _lieflow, so3
 from ._arrays import first
 from ._errors import ArgumentError, RunError
-from ._fields import Parts, Quantities
+from ._fields import Parts, Quantities, numbered
 from ._unitary import ComplexPoints
 
 __all__ = ["ErrorEstimate", "Layout", "OdeSolution", "Result", "warn_of_events"]
@@ -327,8 +327,7 @@ class Result:
             numbers = _by_rows(self.y)
             is_complex = np.iscomplexobj(numbers)
             letters = ["re", "im"] if is_complex else ["y"]
-            places = ["".join(str(i + 1) for i in place) for place in np.ndindex(*self.y.shape[1:])]
-            names = [letter + place for letter in letters for place in places]
+            names = [name for letter in letters for name in numbered(letter, self.y.shape[1:])]
             rows = np.hstack([numbers.real, numbers.imag]) if is_complex else numbers
         return pandas.DataFrame(rows, index=pandas.Index(self.t, name="t"), columns=names)
 

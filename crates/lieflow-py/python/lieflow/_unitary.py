@@ -27,6 +27,11 @@ def is_unitary_name(name: str) -> bool:
     return family in ("u", "su")
 
 
+def is_su2(name: str) -> bool:
+    """Return True for ``SU(2)``, with or without parentheses."""
+    return name.lower().replace("(", "").replace(")", "").replace(" ", "") == "su2"
+
+
 def complex_numbers(name: str, x: Any) -> Complex:
     """Return x as an array of complex128 in C order. Raise TypeError if it has other things than numbers."""
     try:
