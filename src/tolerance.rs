@@ -146,7 +146,9 @@ impl PartTolerance {
             return S::lit(f64::INFINITY);
         }
         let relative_to = smaller(size, S::lit(self.reach) * moved);
-        let rounding = S::lit(self.rtol.min(4.0 * S::EPSILON)) * size;
+        // Where f jumps, the error of a step and its length shrink alike, down to a step of the rounding of t.
+        let rounding = (1e-3 * self.rtol).clamp(4.0 * S::EPSILON, 64.0 * S::EPSILON);
+        let rounding = S::lit(self.rtol.min(rounding)) * size;
         let scale = larger(S::lit(self.rtol) * relative_to, rounding);
         ratio(error, S::lit(self.atol) + scale)
     }

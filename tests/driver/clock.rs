@@ -3,11 +3,11 @@
 use core::f64::consts::TAU;
 
 use lieflow::actions::{LeftTranslation, Linear};
-use lieflow::groups::So3;
+use lieflow::groups::{So3, Translations};
 use lieflow::maps::Exp;
 use lieflow::methods::commutator_free::{CF4, CF43};
 use lieflow::methods::magnus::Magnus4;
-use lieflow::methods::tableau::{DOP853, DOPRI5};
+use lieflow::methods::tableau::{BS3, DOP853, DOPRI5};
 use lieflow::methods::{CommutatorFree, Doubling, Rk, Rkmk};
 use lieflow::nalgebra::{Matrix3, Vector3};
 use lieflow::problems::{Flow, LinearFlow};
@@ -185,5 +185,32 @@ fn a_restored_run_has_the_same_noise() {
         other.restore(bytes).expect("a state");
         other.advance_to(t0 + 20.0).expect("steps");
         assert_eq!((other.y(), other.stats()), (run.y(), run.stats()));
+    }
+}
+
+/// f jumps, and atol is 0: steps shrink there to the rounding of t, and go on.
+#[test]
+fn a_jump_is_passed_with_rtol_alone() {
+    type Numbers = Box<[f64]>;
+    let zero: Numbers = vec![0.0; 3].into();
+    let group = Translations::new(zero, 3);
+    let flow = Flow::of_time(group, LeftTranslation, |t: f64, v: &mut Numbers| {
+        (v[0], v[1]) = (0.02 * (0.3 * t).sin().signum(), 0.01);
+    });
+    let start: Numbers = vec![0.1, 0.2, 0.3].into();
+    // 38 jumps, of which each second takes back what the one before did.
+    let exact = 0.1 + 0.02 * (400.0 - 38.0 * core::f64::consts::PI / 0.3);
+    let check = |rtol: f64, run: Result<lieflow::Solution<Numbers>, String>| {
+        let run = run.unwrap_or_else(|error| panic!("{rtol:e}: {error}"));
+        let error = (run.y[0] - exact).abs();
+        assert!(error < 100.0 * rtol && run.stats.accepted < 20_000, "{error:e}: {:?}", run.stats);
+    };
+    for rtol in [1e-3, 1e-6, 1e-9] {
+        let cf = CommutatorFree(CF43);
+        let solve = Solve::new(&flow, &cf, [0.0, 400.0]).tolerances(rtol, 0.0).max_steps(50_000);
+        check(rtol, solve.run(start.clone()).map_err(|failed| failed.error.to_string()));
+        let solve =
+            Solve::new(&flow, &Rk(BS3), [0.0, 400.0]).tolerances(rtol, 0.0).max_steps(50_000);
+        check(rtol, solve.run(start.clone()).map_err(|failed| failed.error.to_string()));
     }
 }
