@@ -300,14 +300,35 @@ impl Curve {
         passing.min_by(|a, b| a.seconds.total_cmp(&b.seconds))
     }
 
+    /// The runs that count.
+    fn runs(&self) -> Vec<&WorkPoint> {
+        self.points.iter().filter(|p| p.error >= 0.0 && p.seconds_per_unit > 0.0).collect()
+    }
+
+    /// The size of the first run that reaches this error, and the one in the middle between it and the run before.
+    pub(super) fn middle(&self, error: f64) -> Option<[Size; 2]> {
+        let runs = self.runs();
+        let after = runs.iter().position(|p| p.error <= error)?;
+        let (a, b) = (runs.get(after.checked_sub(1)?)?.size, runs[after].size);
+        let middle = match (a, b) {
+            (Size::Tolerance(x), Size::Tolerance(y)) => {
+                Size::Tolerance(rounded_down((x * y).sqrt()))
+            }
+            (Size::Steps(n), Size::Steps(m)) => {
+                Size::Steps((n as f64 * m as f64).sqrt().ceil() as u64)
+            }
+            _ => return None,
+        };
+        Some([b, middle])
+    }
+
     /// The largest steps that reach this error, by a run or between two, and then the runs with smaller steps that do.
     pub(super) fn all_that_reach(&self, error: f64) -> Vec<Reached> {
         // Nobody can tell who reaches an error below the floor.
         if error < self.floor {
             return Vec::new();
         }
-        let runs: Vec<&WorkPoint> =
-            self.points.iter().filter(|p| p.error >= 0.0 && p.seconds_per_unit > 0.0).collect();
+        let runs = self.runs();
         let log_error = |p: &WorkPoint| self.error(p).ln();
         let Some(after) = runs.iter().position(|p| p.error <= error) else { return Vec::new() };
         let b = runs[after];

@@ -374,10 +374,12 @@ impl Bench<'_> {
         Ok(())
     }
 
-    /// Runs with the steps that the line between two runs promises, so that what is advised was tried.
+    /// Runs with the steps that the line between two runs promises, so that what is advised was tried. Where that came no
+    /// nearer to the error from below, as where the error does not fall with the tolerance, those in the middle.
     fn come_near(&mut self, lines: &mut [Line<'_>]) -> Result<(), CliError> {
         for &error in self.effort.wanted {
             for (i, line) in lines.iter_mut().enumerate() {
+                let mut before = None;
                 for _ in 0..NEARER {
                     let Some(reached) = line.curve.all_that_reach(error).first().copied() else {
                         break;
@@ -385,7 +387,14 @@ impl Bench<'_> {
                     if line.point_of(reached.size()).is_some() {
                         break;
                     }
-                    line.left.push_front(reached.size());
+                    let mut size = reached.size();
+                    if let Some([reaches, middle]) = line.curve.middle(error) {
+                        if before == Some(reaches) && line.point_of(middle).is_none() {
+                            size = middle;
+                        }
+                        before = Some(reaches);
+                    }
+                    line.left.push_front(size);
                     self.next(i, line)?;
                 }
             }
