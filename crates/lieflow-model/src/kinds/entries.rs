@@ -7,6 +7,7 @@ use lieflow_runs::schema::{Law, Scale};
 use lieflow_runs::spaces::OnMatrices;
 
 use super::prelude::*;
+use crate::problem::entry_column;
 
 /// The asymmetry that the rounding of written entries explains, relative to the largest entry.
 pub(super) const ROUNDING: f64 = 64.0 * f64::EPSILON;
@@ -111,8 +112,7 @@ pub(super) fn numbered(letter: &str, n: usize) -> Vec<String> {
 
 /// The columns x11, …, xnn, on and above the diagonal, row by row.
 pub(super) fn upper_columns(letter: &str, n: usize) -> Vec<String> {
-    let between = if n > 10 { "_" } else { "" };
-    (1..=n).flat_map(|i| (i..=n).map(move |j| format!("{letter}{i}{between}{j}"))).collect()
+    (1..=n).flat_map(|i| (i..=n).map(move |j| entry_column(letter, [n, n], [i, j]))).collect()
 }
 
 /// The entries, row by row.

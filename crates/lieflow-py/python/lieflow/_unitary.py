@@ -20,16 +20,19 @@ Complex = NDArray[np.complex128]
 MISS = 1e-10
 
 
+def _plain(name: str) -> str:
+    """Return the name in lower case without parentheses and spaces."""
+    return name.lower().replace("(", "").replace(")", "").replace(" ", "")
+
+
 def is_unitary_name(name: str) -> bool:
     """Return True for ``U(n)``, ``SU(n)``, with or without n and parentheses."""
-    plain = name.lower().replace("(", "").replace(")", "").replace(" ", "")
-    family = plain.rstrip("0123456789")
-    return family in ("u", "su")
+    return _plain(name).rstrip("0123456789") in ("u", "su")
 
 
 def is_su2(name: str) -> bool:
     """Return True for ``SU(2)``, with or without parentheses."""
-    return name.lower().replace("(", "").replace(")", "").replace(" ", "") == "su2"
+    return _plain(name) == "su2"
 
 
 def complex_numbers(name: str, x: Any) -> Complex:

@@ -1,6 +1,5 @@
 //! What is said of an inaccurate run, and the change that would help.
 
-use lieflow_model::problem::SHORT_STEPS;
 use lieflow_timing::cpu_seconds;
 
 use super::{Check, LONG, OWN, Way};
@@ -89,11 +88,9 @@ impl Check<'_> {
 
     /// Does the run of a scene that names no method pass over something short? Its end is another one in short steps.
     fn default_passes_over(&self) -> bool {
-        let [t0, end] = self.run.t_span;
-        let short = (end - t0).abs() / SHORT_STEPS as f64;
-        let ends = [None, Some(short)].map(|largest| {
+        let ends = [None, Some(self.short_step())].map(|largest| {
             let way = Way { default: true, largest, ..OWN };
-            self.rows_at(way, &[end]).ok().and_then(|(mut rows, _)| rows.pop())
+            self.rows_at(way, &[self.end()]).ok().and_then(|(mut rows, _)| rows.pop())
         });
         let [Some(one), Some(other)] = ends else { return false };
         self.ends_apart([[&one, &other]].into_iter()).relative() > POOR

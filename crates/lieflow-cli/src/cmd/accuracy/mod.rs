@@ -20,6 +20,7 @@ use lieflow_model::schema::{Component, Observable, Row};
 
 use self::advice::POOR;
 use self::sizes::size;
+use self::unseen::LAST_DIGITS;
 use super::apart::{
     Apart, Beside, ColumnApart, Gap, Largest, Limits, Size, ZerosApart, derived_of, norm, parts_of,
 };
@@ -533,6 +534,16 @@ impl<'a> Check<'a> {
             Apart::of_rows(self.watch, &sizes, pairs)
         };
         let exact = || times.iter().map(|t| self.watch.exact(*t)).collect::<Option<Vec<_>>>();
+        // What rounding does to it, as `moved` of the run.
+        let changed =
+            || self.rows_from(Some(self.changed_start(way, LAST_DIGITS)?), way, times).ok();
+        let moved = match self.is_exact {
+            true => 0.0,
+            false => changed().map_or(self.moved.get(), |(others, _)| {
+                let moved = self.judge((FoundBy::Exact, 1.0), &apart(&others), 0.0, clock);
+                self.by_rounding(moved.relative())
+            }),
+        };
         let (found_by, share, apart) = match self.is_exact {
             true => (FoundBy::Exact, 1.0, apart(&exact()?)),
             false => {
@@ -541,7 +552,6 @@ impl<'a> Check<'a> {
                 self.by_another(way, taken, other).ok()?
             }
         };
-        let moved = if self.is_exact { 0.0 } else { self.moved_in(way, times, &rows) };
         let accuracy = self.judge((found_by, share), &apart, moved, clock);
         // Two runs may have the same rounding.
         Some((moved.max(accuracy.relative()) <= POOR).then_some(accuracy))

@@ -22,17 +22,22 @@ const BRIEF: f64 = 0.015;
 /// A motion that makes this of the last digits of its start is worth a warning.
 const AMPLIFIED: f64 = 1e-8;
 /// The change of the start that shows how rounding in a run grows. A change of one digit may be lost in sums.
-const LAST_DIGITS: f64 = 64.0 * f64::EPSILON;
+pub(super) const LAST_DIGITS: f64 = 64.0 * f64::EPSILON;
 /// Rounding in a run is like this part of it.
 const OF_CHANGE: f64 = 1.0 / 16.0;
 /// A motion that makes this of it is worth a warning, where the error of the method is smaller.
 const GROWN: f64 = 1e-6;
 
 impl Check<'_> {
+    /// The size of short steps.
+    pub(super) fn short_step(&self) -> f64 {
+        let [t0, end] = self.run.t_span;
+        (end - t0).abs() / SHORT_STEPS as f64
+    }
+
     /// A run in short steps, and their size, where those of the run are larger.
     pub(super) fn short_steps(&self) -> Option<(f64, Way)> {
-        let [t0, end] = self.run.t_span;
-        let short = (end - t0).abs() / SHORT_STEPS as f64;
+        let short = self.short_step();
         let way = match self.scene().tolerances() {
             Some(_) => Way { largest: Some(short), ..OWN },
             None => Way { factor: short / self.scene().grid.h().abs(), ..OWN },
@@ -137,7 +142,7 @@ impl Check<'_> {
     }
 
     /// The numbers of the start, changed by this part of them, neighbours in opposite directions.
-    fn changed_start(&self, way: Way, change: f64) -> Option<Vec<f64>> {
+    pub(super) fn changed_start(&self, way: Way, change: f64) -> Option<Vec<f64>> {
         let start = self.watch.model.start(&self.method(way)).ok()?;
         let sign = |i: usize| if i.is_multiple_of(2) { 1.0 } else { -1.0 };
         Some(start.iter().enumerate().map(|(i, x)| x + sign(i) * change * x).collect())
@@ -152,19 +157,6 @@ impl Check<'_> {
         let pairs = pairs.map(|pair| (self.end(), pair.map(|row| &row[..])));
         let apart = Apart::of_rows(self.watch, &self.run.sizes, pairs);
         self.judge((FoundBy::Exact, 1.0), &apart, 0.0, clock)
-    }
-
-    /// What rounding does to another run at these times, where the rows of the run are known: as [`moved`](Check::moved).
-    pub(super) fn moved_in(&self, way: Way, times: &[f64], rows: &[Vec<f64>]) -> f64 {
-        let start = self.changed_start(way, LAST_DIGITS);
-        let Some(Ok((others, _))) = start.map(|start| self.rows_from(Some(start), way, times))
-        else {
-            return self.moved.get();
-        };
-        let pairs = times.iter().zip(rows.iter().zip(&others));
-        let pairs = pairs.map(|(t, (row, other))| (*t, [&row[..], &other[..]]));
-        let apart = Apart::of_rows(self.watch, &self.run.sizes, pairs);
-        self.by_rounding(self.judge((FoundBy::Exact, 1.0), &apart, 0.0, Instant::now()).relative())
     }
 
     /// What rounding does to the end, where the change of the start moves it by this. A motion that is another one then is
