@@ -300,6 +300,12 @@ impl Curve {
         passing.min_by(|a, b| a.seconds.total_cmp(&b.seconds))
     }
 
+    /// The run that reaches this error soonest; `None` where no run reaches it. Advice is a run and no point between two.
+    pub fn run_to(&self, error: f64) -> Option<Reached> {
+        let runs = self.all_that_reach(error).into_iter().skip(1);
+        runs.min_by(|a, b| a.seconds.total_cmp(&b.seconds))
+    }
+
     /// The runs that count.
     fn runs(&self) -> Vec<&WorkPoint> {
         self.points.iter().filter(|p| p.error >= 0.0 && p.seconds_per_unit > 0.0).collect()

@@ -36,7 +36,7 @@ enum Verdict<'a> {
 /// The methods that reach an error, from the fastest on.
 pub fn ranking(curves: &[Curve], error: f64) -> Vec<Found<'_>> {
     let mut found: Vec<Found<'_>> =
-        curves.iter().filter_map(|curve| Some((curve, curve.reached(error)?))).collect();
+        curves.iter().filter_map(|curve| Some((curve, curve.run_to(error)?))).collect();
     found.sort_by(|a, b| a.1.seconds.total_cmp(&b.1.seconds));
     found
 }

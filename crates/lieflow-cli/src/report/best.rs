@@ -81,7 +81,7 @@ impl<'a> Best<'a> {
             };
             let mut cells: Vec<Cell> = vec![curve.label.as_str().into(), kind.into(), order];
             for &error in self.errors {
-                match curve.reached(error) {
+                match curve.run_to(error) {
                     None => cells.extend([DASH, DASH].map(Cell::from)),
                     Some(reached) => {
                         let step = match curve.order {

@@ -18,11 +18,11 @@ fn an_answer_follows_from_the_runs() {
     let curve = |name: &str, order: usize, cost: f64| {
         let candidate = all.iter().find(|c| c.name() == name).unwrap().clone();
         let run = |steps: u64| WorkPoint {
-            error: (steps as f64).powi(-(order as i32)).max(1e-12),
+            error: (1.0 / (steps as f64).powi(order as i32)).max(1e-12),
             seconds_per_unit: cost * steps as f64,
             ..WorkPoint::new([0.0, 1.0], Size::Steps(steps))
         };
-        let points = (0..12).map(|k| run(1 << k)).collect();
+        let points = [1, 2, 4, 8, 10, 16, 32, 64, 100, 128, 256, 512, 1024, 2048].map(run).to_vec();
         Curve {
             label: candidate.name(),
             candidate,
@@ -63,13 +63,14 @@ fn who_stays_on_m_is_told_first() {
     let curve = |name: &str, stays: bool, cost: f64| {
         let candidate = all.iter().find(|c| c.name() == name).unwrap().clone();
         let run = |steps: u64| WorkPoint {
-            error: (steps as f64).powi(-4),
+            error: 1.0 / (steps as f64).powi(4),
             off_manifold: if stays { 1e-16 } else { 0.1 * (steps as f64).powi(-4) },
             seconds_per_unit: cost * steps as f64 + 1e-4,
             output_seconds: 1e-4,
             ..WorkPoint::new([0.0, 1.0], Size::Steps(steps))
         };
-        let (label, points) = (candidate.name(), (0..12).map(|k| run(1 << k)).collect());
+        let steps = [1, 2, 4, 8, 16, 32, 64, 100, 128, 256, 512, 1024, 2048];
+        let (label, points) = (candidate.name(), steps.map(run).to_vec());
         Curve { label, candidate, order: Some(4), stays, floor: 1e-13, points }
     };
     let reference = Reference::Own { by: "a".into(), beside: "b".into(), apart: 1e-13 };
@@ -88,6 +89,11 @@ fn who_stays_on_m_is_told_first() {
         told.contains("No method that stays on M reaches it; this one ends 1e-9 away from M."),
         "{told}"
     );
+    // What is advised was run: it is no point between two runs.
+    let mut curves = curves;
+    curves[0].points.retain(|point| point.size != Size::Steps(100));
+    let told = Answer::new(&curves[..1], &reference, 1e-8).in_words();
+    assert!(told.contains("take “rkmk4 exp” in 128 steps"), "{told}");
     // A reference that is good enough is no reason to worry.
     let reference = Reference::Own { by: "a".into(), beside: "b".into(), apart: 5e-9 };
     assert!(!reference.in_words().contains("NOT") && reference.in_words().contains("to 5e-9"));
