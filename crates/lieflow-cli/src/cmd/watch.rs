@@ -142,6 +142,7 @@ impl<'a> Watch<'a> {
                     largest_step: stats.largest_step,
                 }),
                 failure: (status == Status::Cancelled).then(|| format!("interrupted at t = {t}")),
+                attempts_used_up: false,
                 interrupted: status == Status::Cancelled,
                 ended_by: status.event().map(String::from),
                 t: Some(t),
@@ -154,6 +155,7 @@ impl<'a> Watch<'a> {
                     Some(format!("{error}{told}"))
                 }),
                 taken: Taken { steps: error.accepted().unwrap_or(0), ..Taken::default() },
+                attempts_used_up: matches!(error, RunError::TooManySteps { .. }),
                 ..Done::default()
             }),
         }
@@ -211,6 +213,7 @@ impl<'a> Watch<'a> {
 #[derive(Default)]
 pub(super) struct Done {
     pub(super) failure: Option<String>,
+    pub(super) attempts_used_up: bool,
     pub(super) interrupted: bool,
     pub(super) taken: Taken,
     pub(super) points_within: Option<u64>,

@@ -92,6 +92,9 @@ const WITHIN: [f64; 2] = [0.382, 0.809];
 const FEW: u64 = 200;
 /// An error there that is larger by this factor than that at the end is the error of the run.
 const CANCELLED: f64 = 30.0;
+/// A part that is this much smaller where it is judged than elsewhere returns to 0 there, as once in a period: its size
+/// there is rounding.
+pub(crate) const RETURNS: f64 = 1e-6;
 
 /// The methods of a reference, of different kinds: the first two that fit are taken.
 fn reference_methods() -> Vec<MethodSpec> {
@@ -387,7 +390,7 @@ impl<'a> Judge<'a> {
     }
 
     /// The largest relative distance of a part of the state from `right`, as a run states it: that of a rotation is an
-    /// angle. A part that passes zero has the size of the end.
+    /// angle. A part that passes zero has the size of the end, and one that returns to zero there that within the span.
     fn error_from(&self, right: &[f64], values: &[f64]) -> f64 {
         let [row, right, end] = [values, right, &self.end].map(|values| self.schema.row(values));
         let error = |(observable, part): (&Observable, &Component)| {
@@ -395,7 +398,11 @@ impl<'a> Judge<'a> {
                 [&row, &right, &end].map(|row| &row[observable][part.columns.clone()]);
             let distance = part.measure.distance(x, right);
             let size = if part.measure.is_angle() { 1.0 } else { norm(right).max(norm(end)) };
-            relative(distance, size)
+            let size_within = |(_, state): &(f64, Vec<f64>)| {
+                norm(&self.schema.row(state)[observable][part.columns.clone()])
+            };
+            let within = self.within.iter().map(size_within).fold(0.0, f64::max);
+            relative(distance, if size < RETURNS * within { within } else { size })
         };
         // A part that is no number has left the solution: `f64::max` would forget it.
         let worst = |a: f64, b: f64| if a >= b || a.is_nan() { a } else { b };

@@ -16,6 +16,7 @@ pub use checks::checks;
 use curve::OFF;
 pub use curve::{Curve, Reached, WorkPoint, pareto};
 pub use journal::{JOURNAL, Journal};
+pub(crate) use judge::RETURNS;
 pub use judge::{Course, Judge, MOST_ROWS, Reference, Rounding, Rows};
 pub use kept::Kept;
 

@@ -113,6 +113,39 @@ fn a_part_that_returns_to_zero_at_each_row_has_its_digits() {
     assert!(!out.contains("WARNING") && out.contains("digits are right"), "{out}");
 }
 
+/// Errors of `order` are not relative to the rounding of a part that is 0 after a whole period.
+#[test]
+fn orders_are_measured_over_a_whole_period() {
+    let folder = Folder::new();
+    let scene = "[problem]\nkind = \"composed\"\n[[problem.parts]]\nname = \"x\"\nspace = \"numbers\"\nstart = [0]\n\
+                 field = [\"v\"]\n[[problem.parts]]\nname = \"v\"\nspace = \"numbers\"\nstart = [1]\nfield = [\"-x\"]\n\
+                 [time]\nt_span = [0, \"2*pi\"]\n";
+    folder.write("scene.toml", scene);
+    let out = folder.lieflow(&["order", "scene.toml", "--method", "rk4", "--json"]).ok();
+    let json: serde_json::Value = serde_json::from_str(&out).unwrap();
+    let (floor, curve) = (json["reference_error"].as_f64(), &json["methods"][0]);
+    assert!(floor.is_some_and(|floor| floor < 1e-11), "{out}");
+    let order = curve["measured_order"].as_f64();
+    assert!(order.is_some_and(|order| (order - 4.0).abs() < 0.05), "{out}");
+}
+
+/// From a tiny start that grows, the tolerances that are chosen by the start cannot be met. What to set is told, and is
+/// enough.
+#[test]
+fn the_tolerance_of_a_start_that_grows_is_told() {
+    let folder = Folder::new();
+    let scene = "[problem]\nkind = \"composed\"\n[[problem.parts]]\nname = \"q\"\nspace = \"numbers\"\nstart = [1e-8]\n\
+                 field = [\"p\"]\n[[problem.parts]]\nname = \"p\"\nspace = \"numbers\"\nstart = [0]\n\
+                 field = [\"sin(q)\"]\n[time]\nt_span = [0, 60]\n";
+    folder.write("scene.toml", scene);
+    let told = folder.lieflow(&["run", "scene.toml", "--out", "out", "--no-page"]).refused();
+    let (_, atol) = told.split_once("take atol = ").expect(&told);
+    let atol: f64 = atol.split(',').next().unwrap().parse().unwrap();
+    assert!(1e-16 < atol && atol < 1e-14, "{told}");
+    folder.write("scene.toml", &format!("{scene}rtol = 1e-14\natol = {atol:e}\n"));
+    folder.lieflow(&["run", "scene.toml", "--out", "out", "--no-page"]).ok();
+}
+
 /// Near a saddle small errors grow, and no pulse is passed over.
 #[test]
 fn growth_is_not_taken_for_a_pulse() {

@@ -4,10 +4,9 @@ use lieflow_model::schema::{Component, Observable, Row};
 
 use super::{Check, FEW, OWN};
 use crate::cmd::apart::{Size, norm, parts_of};
+use crate::measure::RETURNS;
 use crate::output::RowSample;
 
-/// A part that is this much smaller at the rows than between them returns to 0 there.
-const RETURNS: f64 = 1e-6;
 /// At so many times between the rows such a part is looked at.
 const BETWEEN: usize = 32;
 /// No period divides it.
