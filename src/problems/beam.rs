@@ -30,26 +30,26 @@ use crate::groups::GroupMatrix;
 pub enum Element {
     /// A drift: no field over a length.
     Drift {
-        /// L.
+        /// The length L.
         length: f64,
     },
     /// A quadrupole; k > 0 focuses x.
     Quadrupole {
-        /// L.
+        /// The length L.
         length: f64,
-        /// k.
+        /// The strength k.
         k: f64,
     },
     /// A quadrupole of length zero: x′ changes by −x/f, z′ by z/f.
     ThinLens {
-        /// f.
+        /// The focal length f.
         focal_length: f64,
     },
     /// A sector dipole.
     Dipole {
-        /// L, along the arc.
+        /// The length L along the arc.
         length: f64,
-        /// ρ.
+        /// The radius ρ of the arc.
         radius: f64,
     },
 }
@@ -150,9 +150,13 @@ pub fn transfer_map(elements: &[Element]) -> Result<GroupMatrix, Error> {
 /// unstable in that plane, or at the limit of stability.
 pub fn tunes(cell: &GroupMatrix) -> [Option<f64>; 2] {
     [0, 1].map(|i| {
-        let (half_trace, upper) = (0.5 * (cell[(i, i)] + cell[(i + 2, i + 2)]), cell[(i, i + 2)]);
-        let mu = half_trace.acos() / core::f64::consts::TAU;
+        let [a, upper, lower, d] =
+            [(0, 0), (0, 2), (2, 0), (2, 2)].map(|(j, k)| cell[(i + j, i + k)]);
+        // cos μ = tr/2. sin² μ = 1 − tr²/4 has all its digits in this form, as det M = 1.
+        let (cos, half) = (0.5 * (a + d), 0.5 * (a - d));
+        let squared = -(half * half + upper * lower);
+        let mu = squared.sqrt().atan2(cos) / core::f64::consts::TAU;
         // M₁₂ = β sin μ with β > 0.
-        (half_trace.abs() < 1.0).then_some(if upper >= 0.0 { mu } else { 1.0 - mu })
+        (squared > 0.0).then_some(if upper >= 0.0 { mu } else { 1.0 - mu })
     })
 }

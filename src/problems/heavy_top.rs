@@ -50,6 +50,9 @@ pub struct HeavyTop<S = f64> {
     integral: Integral<S>,
 }
 
+/// Numbers that differ by this part of them are the same: moments and axes of a tensor have its rounding.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
+
 /// The fourth integral, if there is one.
 #[derive(Clone, Copy, Debug)]
 enum Integral<S> {
@@ -57,34 +60,43 @@ enum Integral<S> {
     Euler,
     /// The axis.
     Lagrange(usize),
+    /// The unit vector along w, where all moments are equal: Lagrange's top about w.
+    Sphere([S; 3]),
     /// The axis k, and w/C along the axes k + 1 and k + 2.
     Kovalevskaya(usize, [S; 2]),
 }
 
 impl<S: Real> HeavyTop<S> {
     /// Makes a top from the principal moments of inertia about the fixed point, and w. Integrable cases are recognised
-    /// by these numbers, with any axis, and then the fourth integral is one of the invariants.
+    /// by these numbers, up to their rounding and with any axis, and then the fourth integral is one of the invariants.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] for a moment that is not finite and positive, and a w that is not finite.
     pub fn new(inertia: [f64; 3], weight: [f64; 3]) -> Result<Self, Error> {
         check_inertia(&inertia)?;
         check_finite("weight", &weight)?;
+        let length = weight.iter().map(|w| w * w).sum::<f64>().sqrt();
+        let equal = |a: f64, b: f64| (a - b).abs() <= ROUNDING * a;
+        let is_none = |w: f64| w.abs() <= ROUNDING * length;
         let about = |k: usize| {
             // From the axis k on in cyclic order.
             let [[c, a, b], [z, x, y]] =
                 [inertia, weight].map(|all| [0, 1, 2].map(|i| all[(k + i) % 3]));
-            if a == b && x == 0.0 && y == 0.0 {
+            if equal(a, b) && is_none(x) && is_none(y) {
                 Some(Integral::Lagrange(k))
-            } else if a == b && a == 2.0 * c && z == 0.0 {
+            } else if equal(a, b) && equal(a, 2.0 * c) && is_none(z) {
                 Some(Integral::Kovalevskaya(k, [x, y].map(|w| S::lit(w / c))))
             } else {
                 None
             }
         };
+        let is_sphere = equal(inertia[0], inertia[1]) && equal(inertia[1], inertia[2]);
+        let sphere = || is_sphere.then(|| Integral::Sphere(weight.map(|w| S::lit(w / length))));
         let integral = match weight == [0.0; 3] {
             true => Integral::Euler,
-            false => [2, 0, 1].into_iter().find_map(about).unwrap_or(Integral::None),
+            false => {
+                [2, 0, 1].into_iter().find_map(about).or_else(sphere).unwrap_or(Integral::None)
+            }
         };
         let vector = |x: [f64; 3]| Vector3::from(x.map(S::lit));
         let inverse_inertia = vector(inertia.map(|j| 1.0 / j));
@@ -128,6 +140,7 @@ impl<S: Real> HeavyTop<S> {
             Integral::None => None,
             Integral::Euler => Some(dot(mu, mu)),
             Integral::Lagrange(k) => Some(mu[k]),
+            Integral::Sphere(e) => Some(dot(&Vector3::from(e), mu)),
             Integral::Kovalevskaya(k, [c, d]) => {
                 let (w, [i, j]) = (self.omega(mu), [1, 2].map(|n| (k + n) % 3));
                 let re = w[i] * w[i] - w[j] * w[j] - (c * gamma[i] - d * gamma[j]);
@@ -142,7 +155,7 @@ impl<S: Real> HeavyTop<S> {
         match self.integral {
             Integral::None => 0,
             Integral::Euler => 2,
-            Integral::Lagrange(_) => 1,
+            Integral::Lagrange(_) | Integral::Sphere(_) => 1,
             Integral::Kovalevskaya(..) => 4,
         }
     }
@@ -181,6 +194,7 @@ impl<S: Real> Hamiltonian<Se3<S>> for HeavyTop<S> {
             Integral::None => None,
             Integral::Euler => Some("|μ|²"),
             Integral::Lagrange(k) => Some(["μ₁", "μ₂", "μ₃"][k]),
+            Integral::Sphere(_) => Some("μ·w/|w|"),
             Integral::Kovalevskaya(..) => Some("Kovalevskaya's integral"),
         };
         let degree = self.degree_of_fourth_integral();

@@ -66,7 +66,7 @@ impl StepControl {
         Ok(StepControl { first_step: Some(positive("first_step", h)?), ..self })
     }
 
-    /// Ends the run with an error below this size. Steps that are cut at the end of the span or at an output may be
+    /// Ends the run with an error below this size. The last two steps to the end of the span, to a stop or to a jump may be
     /// smaller.
     ///
     /// # Errors

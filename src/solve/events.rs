@@ -152,7 +152,8 @@ impl<'a, Y> Event<'a, Y> {
     /// Evaluates g at `points(h, [g₀, g₁])` points within each step, at most 100 000. h > 0 is the step size, g₀ and g₁ are
     /// the values of g at the start and at the end of the step.
     ///
-    /// Example: g > 0 is a rate that the state knows, and the points are so many that h · g / points stays below a bound. Such
+    /// Example: g > 0 is a rate that the state knows, and the number of points is chosen so that h · g / points
+    /// stays below a bound. Such
     /// an event has no zeros; it sees the state often enough.
     pub fn points_by(mut self, points: fn(f64, [f64; 2]) -> u32) -> Self {
         self.rule.points = Points::By(points);

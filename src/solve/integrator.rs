@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use super::drive::Patience;
 use super::held::Held;
-use super::points::{Estimator, Points};
+use super::points::{AnyPoints, Estimator, Points};
 use super::stats::{RunError, Stats};
 use super::stops::Stop;
 use super::streak::{Alone, Reach};
@@ -12,6 +12,7 @@ use super::timeline::{Looked, Pace, Timeline};
 use crate::error::Error;
 use crate::methods::{Method, Step};
 use crate::problems::{PointOf, Problem};
+use crate::space::Metric;
 
 /// A run that is taken step by step.
 ///
@@ -87,9 +88,12 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
 
     /// Takes one step, at most to the end of the span. Returns the time.
     ///
+    /// No value of f is kept from the step before, since the caller may have changed what f depends on.
+    ///
     /// # Errors
     /// [`RunError`]; the state is then the last accepted one. At the end of the span a step does nothing.
     pub fn step(&mut self) -> Result<f64, RunError> {
+        self.forget_f();
         let stop = self.stop(self.times.t1);
         self.times.ask_for(self.times.t1);
         self.times.steps_before(&mut Alone(&mut self.points), stop, Reach::STEP)?;
@@ -105,6 +109,7 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
     pub fn advance_to(&mut self, t: f64) -> Result<&PointOf<P>, RunError> {
         self.times.check_ahead(t)?;
         self.times.ask_for(t);
+        self.forget_f();
         while self.times.t != t {
             self.steps_to(t, u64::MAX)?;
         }
@@ -122,6 +127,7 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
         if self.times.goal != t {
             self.times.ask_for(t);
         }
+        self.forget_f();
         let start = Instant::now();
         while self.times.t != t {
             let clock = Instant::now();
@@ -134,6 +140,11 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
             }
         }
         Ok(self.times.t == t)
+    }
+
+    /// Forgets values of f. The caller may have changed what f depends on since the last step.
+    fn forget_f(&mut self) {
+        self.points.forget();
     }
 
     /// Takes steps of one call of the method, at most to t, and to this number of steps of the run.
@@ -162,9 +173,10 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
     /// `at` ← the state at a time within the last step, by dense output.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] for a time outside the last step, [`RunError::Within`] where the point cannot be
-    /// computed.
+    /// [`Error::OutOfRange`] for a time outside the last step, [`Error::Shape`] or [`Error::Length`] where `at` has another
+    /// size than the state, [`RunError::Within`] where the point cannot be computed.
     pub fn interpolate(&mut self, t: f64, at: &mut PointOf<P>) -> Result<(), RunError> {
+        at.check_sizes("at", &self.points.y)?;
         let place = self.times.known_place(&mut self.points, t)?;
         self.points.look(place, self.times.last, at).map_err(|source| self.times.no_point(source))
     }

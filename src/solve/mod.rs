@@ -527,7 +527,8 @@ where
         self.with(|control| control.first_step(h))
     }
 
-    /// Ends the run with an error below this step size. Only the step at the end of the span may be smaller.
+    /// Ends the run with an error below this step size. The last two steps to the end of the span, to a stop or to a jump
+    /// may be smaller.
     pub fn min_step(self, h: f64) -> Self {
         self.with(|control| control.min_step(h))
     }

@@ -2,8 +2,8 @@
 //!
 //! The time of a stage is rounded, so f(t, y) has an error of about ε/2·|t|·|∂f/∂t|, and the estimated error of a step has a
 //! part that is a multiple of h times that. Where this part is more than the tolerance, the tolerance cannot be met: smaller
-//! steps are more, and their errors add up to the same. Such steps are chosen by the rest of their error. It is relative to
-//! the whole of a part: relative to the length of a step, the rounding would not fall with the step size.
+//! steps are more, and their errors add up to the same. Such steps are chosen by the rest of their error. Here an error is
+//! relative to the whole of a part, because rounding relative to the length of a step does not fall with the step size.
 
 use super::control::GOAL;
 use super::points::AnyPoints;

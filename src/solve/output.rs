@@ -10,6 +10,7 @@ use crate::actions::Action;
 use crate::error::{Error, StepError};
 use crate::methods::{Attempts, Method, Step, Streak};
 use crate::problems::{Invariant, PointOf, Problem};
+use crate::space::Metric;
 
 /// A point that a run keeps for its output.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -184,8 +185,9 @@ impl<P: Problem, M: Method<P>> AnyOutput for Output<'_, '_, P, M> {
         // Whatever the observer wrote there. A point that owns no memory has one shape.
         let is_lost = match next {
             Next::Continue if core::mem::needs_drop::<PointOf<P>>() => {
-                let problem = &*self.points.problem;
-                problem.action().check(problem.group(), &self.shown).is_err()
+                let (problem, shown) = (&*self.points.problem, &self.shown);
+                shown.check_sizes("y", &self.points.y).is_err()
+                    || problem.action().check(problem.group(), shown).is_err()
             }
             Next::Continue | Next::Changed => false,
             Next::Stop => true,

@@ -371,7 +371,11 @@ impl<'a, P: Problem, M: Method<P>> Points<'a, P, M> {
         let (action, group) = (problem.action(), problem.group());
         action.assign(group, y, to);
         change(to);
-        action.check(group, to)?;
+        let checked = to.check_sizes("y", y).and_then(|()| action.check(group, to));
+        if checked.is_err() {
+            to.clone_from(y); // also its size
+            return checked;
+        }
         check_on_manifold::<P>(problem, to, restore)?;
         action.assign(group, to, orbit);
         action.assign(group, to, y);
@@ -404,6 +408,7 @@ impl<'a, P: Problem, M: Method<P>> Points<'a, P, M> {
     /// y ← the point, like [`change`](Self::change).
     pub(super) fn change_to(&mut self, point: &PointOf<P>) -> Result<(), Error> {
         let problem = self.problem.clone();
+        point.check_sizes("y", &self.y)?;
         problem.action().check(problem.group(), point)?;
         self.change(&mut |y| problem.action().assign(problem.group(), point, y))
     }

@@ -138,7 +138,7 @@ pub enum RunError {
         "no step from t = {} succeeded, down to h = {} ({accepted} steps accepted, {rejected} rejected): {}",
         Plain(.t),
         Plain(.h),
-        reason(.source, *.rejected == 0 && .t + .h == *.t)
+        reason(.source, .t + .h == *.t)
     )]
     StepSizeUnderflow {
         /// The time of the last accepted point.
@@ -236,7 +236,8 @@ fn still_to_take(left: f64, h: f64) -> String {
 fn reason(source: &Option<StepError>, is_lost: bool) -> String {
     match source {
         Some(error) => error.to_string(),
-        None if is_lost => "t + h is t after rounding, as beside a jump or a pole of f".into(),
+        None if is_lost => "t + h is t after rounding, as beside a jump or a pole of f, or where a part and its atol are 0"
+            .into(),
         None => "the error stays above the tolerance; where atol is 0, a part that is 0 needs one"
             .into(),
     }

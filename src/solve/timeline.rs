@@ -441,8 +441,11 @@ impl Timeline {
             return Ok(Place::Start);
         }
         self.prepare(points).map_err(|source| self.no_point(source))?;
-        self.looked_within(self.dense_evaluations()[1]);
-        Ok(Place::Within(((t - start) / h).clamp(0.0, 1.0)))
+        let theta = ((t - start) / h).clamp(0.0, 1.0);
+        // A step in two halves has the point between them.
+        let is_known = self.is_doubled() && theta == 0.5;
+        self.looked_within(if is_known { Some(0) } else { self.dense_evaluations()[1] });
+        Ok(Place::Within(theta))
     }
 
     /// The place of t in the last step, by a shorter step from its start.
@@ -464,12 +467,15 @@ impl Timeline {
 
     /// The evaluations that prepare the dense output of a step, and those of a point.
     fn dense_evaluations(&self) -> [Option<u64>; 2] {
-        match &self.pacer {
-            Pacer::ByError(_) if self.facts.doubled_for_error => {
-                [Some(0), self.facts.step.evaluations]
-            }
-            _ => self.facts.dense_evaluations,
+        match self.is_doubled() {
+            true => [Some(0), self.facts.step.evaluations],
+            false => self.facts.dense_evaluations,
         }
+    }
+
+    /// Is each step taken in two halves, for the estimate of its error?
+    fn is_doubled(&self) -> bool {
+        matches!(self.pacer, Pacer::ByError(_)) && self.facts.doubled_for_error
     }
 
     /// Counts a point within a step.

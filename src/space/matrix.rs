@@ -12,6 +12,14 @@ use crate::tolerance::Scales;
 impl Metric for Mat<f64> {
     type Scalar = f64;
     const IS_ONE_PART: bool = true;
+    fn check_sizes(&self, arg: &'static str, like: &Self) -> Result<(), Error> {
+        let (rows, cols) = (self.nrows(), self.ncols());
+        let (expected_rows, expected_cols) = (like.nrows(), like.ncols());
+        match (rows, cols) == (expected_rows, expected_cols) {
+            true => Ok(()),
+            false => Err(Error::Shape { arg, rows, cols, expected_rows, expected_cols }),
+        }
+    }
     fn assign(&mut self, x: &Self) {
         self.copy_from(x);
     }
@@ -64,14 +72,6 @@ fn entries(m: &Mat<f64>) -> impl Iterator<Item = f64> {
 }
 
 impl LinearSpace for Mat<f64> {
-    fn check_sizes(&self, arg: &'static str, like: &Self) -> Result<(), Error> {
-        let (rows, cols) = (self.nrows(), self.ncols());
-        let (expected_rows, expected_cols) = (like.nrows(), like.ncols());
-        match (rows, cols) == (expected_rows, expected_cols) {
-            true => Ok(()),
-            false => Err(Error::Shape { arg, rows, cols, expected_rows, expected_cols }),
-        }
-    }
     fn clear(&mut self) {
         self.fill(0.0);
     }

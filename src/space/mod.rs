@@ -38,6 +38,13 @@ pub trait Metric: Send + Sync {
     fn is_same(&self, _x: &Self) -> bool {
         false
     }
+    /// Checks that the storage has the sizes of that of `like`, where it has any.
+    ///
+    /// # Errors
+    /// [`Error::Length`] and [`Error::Shape`] with the name `arg`.
+    fn check_sizes(&self, _arg: &'static str, _like: &Self) -> Result<(), Error> {
+        Ok(())
+    }
     /// An error at this point in units of the tolerance: the largest of the ratios of the parts
     /// ([`tolerance`](crate::tolerance)).
     #[inline]
@@ -178,13 +185,6 @@ pub trait LinearSpace: Metric + Clone {
     fn clear(&mut self);
     /// self ← self + a·x.
     fn add(&mut self, a: Self::Scalar, x: &Self);
-    /// Checks that the storage has the sizes of that of `like`, where it has any.
-    ///
-    /// # Errors
-    /// [`Error::Length`] and [`Error::Shape`] with the name `arg`.
-    fn check_sizes(&self, _arg: &'static str, _like: &Self) -> Result<(), Error> {
-        Ok(())
-    }
     /// ⟨self, x⟩, the sum of the products of their numbers.
     fn dot(&self, x: &Self) -> Self::Scalar;
     /// Is every number finite?
@@ -407,6 +407,10 @@ impl LinearSpace for UnitQuaternion<f64> {
 impl<A: Metric, B: Metric<Scalar = A::Scalar>> Metric for (A, B) {
     type Scalar = A::Scalar;
     const IS_SMALL: bool = A::IS_SMALL && B::IS_SMALL;
+    fn check_sizes(&self, arg: &'static str, like: &Self) -> Result<(), Error> {
+        self.0.check_sizes(arg, &like.0)?;
+        self.1.check_sizes(arg, &like.1)
+    }
     #[inline]
     fn assign(&mut self, x: &Self) {
         self.0.assign(&x.0);
@@ -434,10 +438,6 @@ impl<A: Metric, B: Metric<Scalar = A::Scalar>> Metric for (A, B) {
 }
 
 impl<A: LinearSpace, B: LinearSpace<Scalar = A::Scalar>> LinearSpace for (A, B) {
-    fn check_sizes(&self, arg: &'static str, like: &Self) -> Result<(), Error> {
-        self.0.check_sizes(arg, &like.0)?;
-        self.1.check_sizes(arg, &like.1)
-    }
     #[inline]
     fn clear(&mut self) {
         self.0.clear();
@@ -461,6 +461,9 @@ impl<A: LinearSpace, B: LinearSpace<Scalar = A::Scalar>> LinearSpace for (A, B) 
 #[deny(clippy::missing_trait_methods)] // passes on every function
 impl<M: Metric, const N: usize> Metric for [M; N] {
     type Scalar = M::Scalar;
+    fn check_sizes(&self, arg: &'static str, like: &Self) -> Result<(), Error> {
+        self.iter().zip(like).try_for_each(|(x, like)| x.check_sizes(arg, like))
+    }
     #[inline]
     fn assign(&mut self, x: &Self) {
         for (y, x) in self.iter_mut().zip(x) {
@@ -492,9 +495,6 @@ impl<M: Metric, const N: usize> Metric for [M; N] {
 }
 
 impl<M: LinearSpace, const N: usize> LinearSpace for [M; N] {
-    fn check_sizes(&self, arg: &'static str, like: &Self) -> Result<(), Error> {
-        self.iter().zip(like).try_for_each(|(x, like)| x.check_sizes(arg, like))
-    }
     #[inline]
     fn clear(&mut self) {
         self.iter_mut().for_each(M::clear);
@@ -524,6 +524,13 @@ fn norm<S: Real>(sizes: impl Iterator<Item = S>) -> S {
 #[deny(clippy::missing_trait_methods)] // passes on every function
 impl<M: Metric> Metric for Box<[M]> {
     type Scalar = M::Scalar;
+    fn check_sizes(&self, arg: &'static str, like: &Self) -> Result<(), Error> {
+        if self.len() != like.len() {
+            let (found, expected) = (self.len(), like.len().to_string());
+            return Err(Error::Length { arg: arg.into(), found, expected });
+        }
+        self.iter().zip(like).try_for_each(|(x, like)| x.check_sizes(arg, like))
+    }
     #[inline]
     fn assign(&mut self, x: &Self) {
         for (y, x) in self.iter_mut().zip(x) {
@@ -547,13 +554,6 @@ impl<M: Metric> Metric for Box<[M]> {
 }
 
 impl<A: LinearSpace> LinearSpace for Box<[A]> {
-    fn check_sizes(&self, arg: &'static str, like: &Self) -> Result<(), Error> {
-        if self.len() != like.len() {
-            let (found, expected) = (self.len(), like.len().to_string());
-            return Err(Error::Length { arg: arg.into(), found, expected });
-        }
-        self.iter().zip(like).try_for_each(|(x, like)| x.check_sizes(arg, like))
-    }
     #[inline]
     fn clear(&mut self) {
         self.iter_mut().for_each(A::clear);

@@ -104,6 +104,20 @@ fn evaluations_of_rows_are_counted() {
                 "{name}, {rows} rows: {stated} stated, {calls} calls"
             );
         }
+        // The point in the middle of a step that is doubled is known.
+        let mut run = Solve::new(&flow, &method, [0.0, 10.0])
+            .tolerances(1e-6, 1e-6)
+            .integrator(Vector3::x())
+            .expect("a start");
+        run.step().expect("a step");
+        let middle = 0.5 * run.t();
+        CALLS.store(0, Ordering::Relaxed);
+        let (before, mut at) = (run.stats().evaluations.expect("a count"), Vector3::zeros());
+        for _ in 0..20 {
+            run.interpolate(middle, &mut at).expect("a point");
+        }
+        let stated = run.stats().evaluations.expect("a count") - before;
+        assert_eq!(stated, CALLS.load(Ordering::Relaxed), "{name}");
     }
 }
 

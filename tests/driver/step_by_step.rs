@@ -3,15 +3,18 @@
 use std::cell::Cell;
 use std::time::Duration;
 
-use lieflow::actions::LeftTranslation;
-use lieflow::groups::{So3, Translations};
+use lieflow::actions::{LeftTranslation, Linear};
+use lieflow::catalog::MethodsByName;
+use lieflow::faer::Mat;
+use lieflow::groups::{AlgebraMatrix, LieAlgebra, MatrixGroup, Power, So3, Translations};
 use lieflow::maps::Exp;
 use lieflow::methods::tableau::{BS3, DOP853, DOPRI5, HEUN, RK4};
 use lieflow::methods::{AnyMethod, Rk, Rkmk};
 use lieflow::nalgebra::{Matrix3, Vector3};
 use lieflow::problems::Flow;
 use lieflow::so3::exp;
-use lieflow::{Event, RunError, Solve, TimeGrid};
+use lieflow::solve::Next;
+use lieflow::{Event, RunError, SaveAt, Solve, TimeGrid};
 
 /// ω about one axis with a pulse of 1000 for a thousandth of the time: its integral up to t.
 const PULSE: [f64; 2] = [2.0, 2.001];
@@ -224,6 +227,18 @@ fn f_may_change_where_a_step_ends() {
             rate.set(2.0);
             let y = *run.advance_to(2.0).expect("steps");
             assert!((y - 3.0).abs() < 1e-12, "{y}");
+            // Between any two steps, too: y is the sum of the rates times the steps.
+            let limited = solve().max_step(0.05);
+            let (mut run, mut sum, mut sign) = (limited.integrator(0.0).expect("a start"), 0.0, 1.0);
+            while !run.is_done() {
+                rate.set(sign);
+                let before = run.t();
+                run.step().expect("a step");
+                sum += sign * (run.t() - before);
+                sign = -sign;
+            }
+            assert!((run.y() - sum).abs() < 1e-12, "{} for {sum}", run.y());
+            assert!(run.stats().accepted < 100, "{:?}", run.stats());
             // The change leaves y as it is.
             rate.set(1.0);
             let switch = Event::new("switch", |t, _| t - 1.0).change(|_, _| rate.set(2.0));
@@ -232,6 +247,59 @@ fn f_may_change_where_a_step_ends() {
         })*};
     }
     check![Rk(BS3), Rk(DOPRI5), Rkmk::new(DOPRI5, Exp), AnyMethod::embedded(Rk(DOPRI5))];
+}
+
+/// A state of another number of columns, a point of another size: each is refused, and the run goes on.
+#[test]
+fn points_of_other_sizes_are_refused() {
+    let group = MatrixGroup::so(5).expect("SO(5)");
+    let zero = group.zero();
+    let field = |_: f64, _: &Mat<f64>, v: &mut AlgebraMatrix| v.clone_from(&zero);
+    let flow = Flow::new(group, Linear, field);
+    let start = Mat::from_fn(5, 1, |i, _| i as f64);
+    let wide = || Mat::<f64>::zeros(5, 3);
+    for name in ["rk4", "rk dopri5", "rkmk4", "cf4", "gauss4"] {
+        let method = flow.method(&name.parse().expect("a name")).expect("a method");
+        let solve = || Solve::new(&flow, &method, [0.0, 1.0]).dt(0.25);
+        let mut run = solve().integrator(start.clone()).expect("a start");
+        run.step().expect("a step");
+        for _ in 0..2 {
+            let told = run.set_state(&wide()).expect_err("another size").to_string();
+            assert!(told.contains("5×3, expected 5×1"), "{told}");
+            run.step().expect("a step");
+        }
+        for t in [0.6, run.t()] {
+            for other in [wide(), Mat::zeros(0, 0), Mat::zeros(4, 1)] {
+                let told = run.interpolate(t, &mut other.clone()).expect_err("another size");
+                assert!(told.to_string().starts_with("at: "), "{told}");
+            }
+        }
+        let event = Event::new("at", |t, _| t - 0.3).change(move |_, y: &mut Mat<f64>| *y = wide());
+        let told = solve().event(event).run(start.clone()).expect_err("another size").to_string();
+        assert!(told.contains("5×3, expected 5×1"), "{told}");
+        let observed = |next: Next| {
+            solve().save(SaveAt::Every(1)).run_with(start.clone(), move |_, y| {
+                *y = wide();
+                next
+            })
+        };
+        observed(Next::Changed).expect_err("another size");
+        assert_eq!(observed(Next::Continue).expect("a run").y, start);
+    }
+    let copies = Power::new(So3::<f64>::new(), 3).expect("copies");
+    let still =
+        Flow::new(copies, Linear, |_, _: &Box<[Vector3<f64>]>, _: &mut Box<[Vector3<f64>]>| {});
+    let method = Rkmk::new(RK4, Exp);
+    let start: Box<[Vector3<f64>]> = vec![Vector3::x(); 3].into();
+    let solve = Solve::new(&still, &method, [0.0, 1.0]).dt(0.5);
+    let mut run = solve.integrator(start).expect("a start");
+    run.step().expect("a step");
+    for n in [0, 2, 5] {
+        let mut other: Box<[Vector3<f64>]> = vec![Vector3::zeros(); n].into();
+        for t in [0.2, 0.5] {
+            run.interpolate(t, &mut other).expect_err("another size");
+        }
+    }
 }
 
 /// The limit of attempts is that of a call: a loop by hand may take any number of steps, and each call ends.

@@ -43,9 +43,11 @@ where
         }
         let stats = single.stats();
         assert_eq!(*single.y(), free.y, "{name}, one step a call");
+        // Between two calls f may become another one: a stage that a step had from the one before is computed again.
+        let again = if ["rk dopri5", "rk bs3"].contains(&name) { stats.accepted - 1 } else { 0 };
         assert_eq!(
             (stats.accepted, stats.rejected, stats.evaluations),
-            (free.stats.accepted, free.stats.rejected, free.stats.evaluations),
+            (free.stats.accepted, free.stats.rejected, free.stats.evaluations.map(|n| n + again)),
             "{name}, one step a call"
         );
 

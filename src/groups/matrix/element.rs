@@ -5,6 +5,7 @@ use core::ops::{Deref, DerefMut};
 use approx::{AbsDiffEq, RelativeEq};
 use faer::Mat;
 
+use crate::error::Error;
 use crate::space::{LinearSpace, Metric, Numbers};
 
 macro_rules! matrix_element {
@@ -57,6 +58,9 @@ macro_rules! matrix_element {
         impl Metric for $name {
             type Scalar = f64;
             const IS_ONE_PART: bool = true;
+            fn check_sizes(&self, arg: &'static str, like: &Self) -> Result<(), Error> {
+                self.0.check_sizes(arg, like)
+            }
             fn assign(&mut self, x: &Self) {
                 self.0.assign(x);
             }

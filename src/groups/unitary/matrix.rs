@@ -191,6 +191,10 @@ impl Numbers for ComplexMatrix {
 impl Metric for ComplexMatrix {
     type Scalar = f64;
     const IS_ONE_PART: bool = true;
+    fn check_sizes(&self, arg: &'static str, like: &Self) -> Result<(), Error> {
+        self.re.check_sizes(arg, &like.re)?;
+        self.im.check_sizes(arg, &like.im)
+    }
     fn assign(&mut self, x: &Self) {
         self.re.copy_from(&x.re);
         self.im.copy_from(&x.im);
@@ -207,10 +211,6 @@ impl Metric for ComplexMatrix {
 }
 
 impl LinearSpace for ComplexMatrix {
-    fn check_sizes(&self, arg: &'static str, like: &Self) -> Result<(), Error> {
-        self.re.check_sizes(arg, &like.re)?;
-        self.im.check_sizes(arg, &like.im)
-    }
     fn clear(&mut self) {
         self.re.fill(0.0);
         self.im.fill(0.0);

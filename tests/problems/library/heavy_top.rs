@@ -77,6 +77,18 @@ fn integrable_tops_about_any_axis() {
         let tilted: HeavyTop = HeavyTop::new(axes(0.5, 1.0, 1.0), axes(0.1, 1.1, 0.0)).unwrap();
         assert!(!tilted.is_integrable());
     }
+    // Moments and axes of a tensor have its rounding.
+    let top = HeavyTop::new([1.0, 1.0 + f64::EPSILON, 0.6], [1e-17, -2e-17, 1.3]).unwrap();
+    assert_eq!(top.problem().invariants()[3].name, "μ₃");
+    keeps_its_invariants(&top.problem(), &START, 10.0, 4000, 1e-9);
+    let top: HeavyTop = HeavyTop::new([1.0, 1.0 - f64::EPSILON, 0.5], [0.6, 0.8, 2e-17]).unwrap();
+    assert_eq!(top.problem().invariants()[3].name, "Kovalevskaya's integral");
+    // With three equal moments each top is Lagrange's, about w.
+    let sphere = HeavyTop::new([2.0; 3], [0.3, 0.4, 0.5]).unwrap();
+    assert_eq!(sphere.problem().invariants()[3].name, "μ·w/|w|");
+    keeps_its_invariants(&sphere.problem(), &START, 10.0, 4000, 1e-9);
+    let nearly: HeavyTop = HeavyTop::new([1.0, 1.0 + 1e-12, 0.6], [0.0, 0.0, 1.3]).unwrap();
+    assert!(!nearly.is_integrable());
 }
 
 /// Hanging straight down is a fixed point, bit for bit; upright with enough spin stays upright.

@@ -161,6 +161,13 @@ fn beam_lines() {
     let half = transfer_map(&[thick(1.0), drift]).unwrap();
     let other = transfer_map(&[thick(-1.0), drift]).unwrap();
     assert!((&*other * &*half - &*cell).norm_l2() < 1e-14);
+    // Weak lenses: the trace is 2 to rounding, and the tune has its digits. References of 50 digits.
+    for (k, expected) in [(1e-4, 1.052710998558659e-5), (1e-8, 1.052710998369481e-9)] {
+        let quadrupole = |sign: f64| Element::Quadrupole { length: 0.5, k: sign * k };
+        let weak = [quadrupole(1.0), drift, quadrupole(-1.0), drift];
+        let [x, z] = tunes(&transfer_map(&weak).unwrap()).map(|tune| tune.unwrap());
+        assert!((x / expected - 1.0).abs() < 1e-6 && (z / expected - 1.0).abs() < 1e-6, "{x} {z}");
+    }
     // Lenses too strong for their distance: f < L/4 is unstable in both planes.
     let strong = |sign: f64| Element::ThinLens { focal_length: sign * 0.4 };
     let unstable = transfer_map(&[strong(1.0), drift, strong(-1.0), drift]).unwrap();
