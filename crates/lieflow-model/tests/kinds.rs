@@ -32,6 +32,8 @@ mod quantum;
 mod refused;
 #[path = "kinds/samples.rs"]
 mod samples;
+#[path = "kinds/tops.rs"]
+mod tops;
 #[path = "kinds/values.rs"]
 mod values;
 use lieflow_model::kinds::KINDS;

@@ -3,8 +3,9 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use lieflow_model::problem::Plan;
+use lieflow_model::problem::{Outcome, Plan};
 use lieflow_model::scene;
+use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -78,7 +79,7 @@ impl Scene {
         seen.found = plan.events.iter().map(|_| Rows::default()).collect();
         drop(plan);
         self.0.forget_losses();
-        let (status, lost) = py.detach(|| {
+        let (done, lost) = py.detach(|| {
             let plan = match self.0.plan(model.schema()) {
                 Ok(plan) => Plan { cancel: Some(&raised.stop), ..plan },
                 Err(error) => return (Err(error.into()), None),
@@ -86,10 +87,19 @@ impl Scene {
             let mut watcher = Watching { callback: None, raised: &raised, seen: &mut seen };
             let done = model.drive(&self.0.method, plan, &mut watcher);
             let lost = done.as_ref().err().and_then(|error| self.0.lost_in_words(error));
-            (done.map(|outcome| outcome.status), lost)
+            (done, lost)
         });
         let width = model.schema().columns().count();
+        let (status, end) = match done {
+            Ok(Outcome { status, state, mut row, .. }) => {
+                row.truncate(width);
+                (Ok(status), Some((PyArray1::from_vec(py, row), PyArray1::from_vec(py, state))))
+            }
+            Err(error) => (Err(error), None),
+        };
         let result = seen.into_dict(py, &raised, status, (&[width], "h_max"), None)?;
+        result.set_item("end", end)?;
+        result.set_item("form", model.problem_type(&self.0.method))?;
         if let Some(lost) = lost {
             result.set_item("message", lost)?;
         }

@@ -290,3 +290,34 @@ def test_spaces_without_methods_for_linear_equations_are_told():
     # Other methods run.
     run = lf.solve_ivp(lambda t: [0, 0, 1], (0, 1), [1, 0, 0, 0], **{**quaternion, "method": "rkmk dop853"})
     assert np.allclose(run.y_end, [np.cos(0.5), 0, 0, np.sin(0.5)])
+
+
+def test_samples_of_parts_are_in_their_order():
+    parts = lf.Parts(h="numbers 3", s="vector")
+    values = [[1.0, 2, 3, 0, 0, 0.5]] * 2
+    start = {"h": [0.0, 0, 0], "s": [1.0, 0, 0]}
+    run = lf.solve_ivp(lf.Samples([0.0, 2.0], values), (0, 2), start, group=parts, t_eval=[2.0])
+    assert np.abs(run.y["h"][-1] - [2, 4, 6]).max() < 1e-12
+    assert np.abs(run.y["s"][-1] - [np.cos(1), np.sin(1), 0]).max() < 1e-6
+
+
+def test_low_level_callables():
+    import ctypes
+
+    scipy = pytest.importorskip("scipy")
+    pointer = ctypes.POINTER(ctypes.c_double)
+
+    @ctypes.CFUNCTYPE(None, ctypes.c_double, pointer, pointer, pointer)
+    def turn(t, y, v, p):
+        v[2] = p[0]
+
+    address = ctypes.cast(turn, ctypes.c_void_p).value
+    new = ctypes.pythonapi.PyCapsule_New
+    new.restype, new.argtypes = ctypes.py_object, [ctypes.c_void_p, ctypes.c_char_p, ctypes.c_void_p]
+    name = b"void (double, double const *, double *, double const *)"
+    capsule = new(address, name, None)
+    for function in (turn, capsule, scipy.LowLevelCallable(turn), scipy.LowLevelCallable(capsule)):
+        assert lf.CFunction(function, [3.0]).address == address
+    numbers = (ctypes.c_double * 1)(2.0)
+    with pytest.raises(lf.ArgumentError, match="user_data.*parameters"):
+        lf.CFunction(scipy.LowLevelCallable(turn, ctypes.cast(numbers, ctypes.c_void_p)))

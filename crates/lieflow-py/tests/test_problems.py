@@ -445,3 +445,60 @@ def test_a_pulse_is_searched_for_after_few_steps():
 
     run = lf.solve_ivp(f, (0, 30), [0, 0.6, 0.8], group="SO(3)", action="linear", rtol=1e-6)
     assert run.nsteps > 20 or run.estimate_error().y > 0.1, run.estimate_error()
+
+
+TENSOR = np.array([[2, 0.1, 0.2], [0.1, 1.5, -0.1], [0.2, -0.1, 1.2]])
+OTHER = np.array([[1.8, 0.05, 0.1], [0.05, 1.5, -0.2], [0.1, -0.2, 1.1]])
+
+
+@pytest.mark.parametrize("quantities", [["attitude", "momentum_space", "momentum_body"], ["momentum_body"]])
+@pytest.mark.parametrize("kind, keys", [(lf.HeavyTop, {"weight": [0, 0, 1.0]}), (lf.RigidBody, {}), (lf.DrivenBody, {"damping": 0.1})])
+def test_states_of_bodies_are_in_the_frame_of_the_tensor(kind, keys, quantities):
+    start = {"omega_body": [0.1, 0.2, -0.1], "attitude": lf.so3.exp([1.0, -0.8, 0.5])}
+    first = kind(inertia=TENSOR, **start, **keys)
+    before = lf.solve_ivp(first, (0, 2), quantities=quantities)
+    if kind is lf.RigidBody and "attitude" in quantities:
+        with pytest.raises(lf.ArgumentError, match="an attitude alone"):
+            lf.solve_ivp(first.replace(inertia=OTHER), (2, 3), before.y_end, quantities=quantities)
+        return
+    for inertia in (OTHER, np.diag([1.2, 1.5, 2.0]), [1.2, 1.5, 2.0]):
+        after = lf.solve_ivp(first.replace(inertia=inertia), (2, 3), before.y_end, quantities=quantities)
+        for name in quantities:
+            # The momentum in space is that of the state where the attitude is, the one in the body where it is alone.
+            assert np.abs(after[name][0] - before[name][-1]).max() < 1e-13, (name, inertia)
+    # A run goes on from the numbers of a state, as from itself.
+    run = lf.Integrator(first, t_span=(0, 5), quantities=quantities)
+    run.advance_to(2.0)
+    again = lf.solve_ivp(first, (2, 5), run.state, quantities=quantities)
+    whole = lf.solve_ivp(first, (0, 5), quantities=quantities)
+    for name in quantities:
+        assert np.abs(again[name][-1] - whole[name][-1]).max() < 1e-11
+
+
+@pytest.mark.parametrize("inertia", [TENSOR, np.diag([2, 1.5, 1.2]), np.diag([3.0, 1, 2]), [2, 1.5, 1.2]])
+def test_changes_of_bodies_are_in_the_frame_of_the_tensor(inertia):
+    body = lf.RigidBody(inertia=inertia, omega_body=[0.3, 0.2, -0.1])
+    pulse = lf.Event(lambda t, y: t - 1, change=lambda t, m: m + [0, 0, 0.5], name="pulse")
+    run = lf.solve_ivp(body, (0, 2), t_eval=[1 - 1e-9, 1 + 1e-9], events=pulse, quantities=["momentum_body"])
+    assert np.abs(run.momentum_body[1] - run.momentum_body[0] - [0, 0, 0.5]).max() < 1e-8
+    turned = lf.RigidBody(inertia=inertia, omega_body=[0.3, 0.2, -0.1], quaternion=[1, 0, 0, 0])
+    state = lf.Integrator(turned, t_span=(0, 1), quantities=["quaternion"]).state
+    assert np.abs(np.abs(state).max() - 1) < 1e-15 and np.count_nonzero(np.abs(state) > 1e-15) == 1
+
+
+def test_the_end_of_a_scene_is_a_start():
+    scene = lf.load("asymmetric-top")
+    end = scene.run().y_end
+    t = scene.t_span[1]
+    after = lf.solve_ivp(scene.problem, (t, t + 1), end, quantities=scene.quantities)
+    for name in end:
+        assert np.abs(after[name][0] - end[name]).max() < 1e-14
+
+
+def test_parts_in_another_order_are_others():
+    a = {"name": "a", "space": "numbers", "start": [1.0], "field": ["b"]}
+    b = {"name": "b", "space": "numbers", "start": [2.0], "field": ["-a"]}
+    end = lf.solve_ivp(lf.Composed(parts=[a, b]), (0, 1)).y_end
+    assert lf.solve_ivp(lf.Composed(parts=[a, b]), (1, 2), end).success
+    with pytest.raises(lf.ArgumentError, match="other parts"):
+        lf.solve_ivp(lf.Composed(parts=[b, a]), (1, 2), end)

@@ -5,6 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use super::names::{Entry, Names, continues_name};
 use super::tape::Tape;
+use lieflow::error::Plain;
 
 /// Where a formula stands, and what its names mean.
 pub(super) struct Origin {
@@ -143,7 +144,8 @@ const SHOWN: usize = 9;
 impl Lost {
     /// The first variables with their values, as in `x = 1, y = 2`.
     pub(super) fn place(&self) -> String {
-        let shown = self.at.iter().take(SHOWN).map(|(name, x)| format!("{name} = {x}"));
+        let shown = self.at.iter().take(SHOWN);
+        let shown = shown.map(|(name, x)| format!("{name} = {}", Plain(x)));
         let rest = (self.at.len() > SHOWN).then(|| "…".into());
         shown.chain(rest).collect::<Vec<String>>().join(", ")
     }

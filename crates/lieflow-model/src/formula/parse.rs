@@ -19,6 +19,13 @@ use super::tape::{Builder, LENGTH_MAX, Tape};
 use super::value::Value;
 use crate::reader::help_for;
 
+/// Names of units that people write after a number.
+const UNITS: [&str; 38] = [
+    "m", "mm", "um", "nm", "cm", "km", "s", "ms", "us", "ns", "min", "h", "d", "g", "kg", "N",
+    "mN", "kN", "Nm", "Nms", "J", "W", "V", "A", "T", "mT", "nT", "G", "K", "Pa", "Hz", "kHz",
+    "MHz", "GHz", "rpm", "eV", "keV", "MeV",
+];
+
 /// The help for a number with a comma.
 pub const DECIMAL_POINT: &str = "a number is written with a decimal point, not a comma: 0.5";
 
@@ -182,7 +189,13 @@ impl Parser<'_> {
                 "i" | "j" => format!(
                     "formulas are real: an imaginary part {number} has a key of its own, as in hamiltonian_imaginary"
                 ),
-                _ => format!("write {number}; units are left out, but for those of angles"),
+                second if second.starts_with('_') => {
+                    "the digits of a number are written without `_`".into()
+                }
+                second if UNITS.contains(&second) => {
+                    format!("write {number}; units are left out, but for those of angles")
+                }
+                second => format!("a product is written {first}*{second}"),
             },
             _ => format!("a product is written {first}*{second}"),
         }

@@ -255,6 +255,13 @@ fn what_is_wrong_is_said_with_its_place() {
         ),
         ("2x", "found `x`, expected an operator or the end at character 2", Some("2*x")),
         (
+            "2 kg",
+            "found `k`, expected an operator or the end at character 3",
+            Some("write 2; units"),
+        ),
+        ("2xx", "found `x`, expected an operator or the end at character 2", Some("written 2*xx")),
+        ("1_000", "found `_`, expected an operator or the end at character 2", Some("without `_`")),
+        (
             "x**2",
             "found `*`, expected a number, a name or a parenthesis at character 3",
             Some("x^2"),

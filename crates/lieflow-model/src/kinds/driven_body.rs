@@ -23,7 +23,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::body::*;
 use super::prelude::*;
 use crate::formula::{Formula, Names, Texts, without_value};
-use crate::problem::PointOf;
+use crate::problem::{PointOf, numbers_of, set_numbers};
 use crate::reader::values;
 
 /// The entry in the list of kinds.
@@ -211,6 +211,11 @@ impl Oriented for Driven {
     }
 }
 
+/// The attitude and the momentum in space, with the axes of the body turned by this rotation.
+pub(super) fn turned((g, m): &Point, turn: &Matrix3<f64>) -> Point {
+    (g * turn.transpose(), *m)
+}
+
 impl AsBody for Driven {
     fn momentum(&self, (g, m): &Point) -> Vector3<f64> {
         g.tr_mul(m)
@@ -288,6 +293,16 @@ impl System for Driven {
 
     fn layer(&self) -> Layer {
         Layer::Closed
+    }
+    fn numbers(&self, y: &Point) -> Vec<f64> {
+        numbers_of(&mut self.spec.axes.map_or(*y, |axes| turned(y, &axes)))
+    }
+    fn set_point(&self, y: &mut Point, arg: &str, numbers: &[f64]) -> Result<(), Error> {
+        set_numbers(y, arg, numbers)?;
+        if let Some(axes) = self.spec.axes {
+            *y = turned(y, &axes.transpose());
+        }
+        Ok(())
     }
     fn problem(&self) -> Result<Start<spaces::Driven>, Error> {
         Ok((on(&self.body, &self.torques), self.start))

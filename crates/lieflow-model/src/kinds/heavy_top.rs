@@ -12,12 +12,12 @@ use lieflow::actions::Coadjoint;
 use lieflow::problems::{HeavyTop, TorqueBody};
 use lieflow::scalar::{Counted, Trig};
 use lieflow_runs::spaces::{Driven, OnSe3};
-use nalgebra::{Matrix3, Rotation3, Vector3};
+use nalgebra::{Matrix3, Vector3};
 
 use super::body::*;
 use super::driven_body::{self, Torques};
 use super::prelude::*;
-use crate::problem::{PointOf, Runnable};
+use crate::problem::{PointOf, Runnable, numbers_of, set_numbers};
 
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {
@@ -45,6 +45,8 @@ struct TopSpec {
 
 /// The distance that `vertical` and `attitude` may have from each other.
 const AGREED: f64 = 1e-6;
+/// What is nearer is the same.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 fn read(mut keys: Keys) -> Result<Forms, ReadError> {
     let (body, mut notes) = (keys.body_keys(), Vec::new());
@@ -61,16 +63,24 @@ fn read(mut keys: Keys) -> Result<Forms, ReadError> {
         }
         _ => Ok(()),
     };
+    let has_attitude = body.has_attitude();
     let upright = vertical.as_ref().ok().and_then(|vertical| vertical.map(upright));
     let (body, weight) = (body.start(upright.unwrap_or_else(Matrix3::identity)), keys.weight);
     let (stated, (), mut body, weight) = all!(vertical, stands, body, weight)?;
-    let of_attitude = || body.attitude.row(2).transpose();
-    let vertical = stated.map_or_else(of_attitude, |vertical| body.along_axes(vertical));
-    let apart = (vertical - of_attitude()).norm();
+    let of_attitude = body.attitude.row(2).transpose();
+    let stated = stated.map_or(of_attitude, |vertical| body.along_axes(vertical));
+    let apart = (stated - of_attitude).norm();
     if apart > AGREED {
         let message = format!("vertical is {apart:.1e} from the third row of the attitude");
         let help = Some("leave one of the two out".into());
         return Err(Refusal { help, ..Refusal::at("vertical", message) }.into());
+    }
+    // The attitude counts, in each form of the problem.
+    let vertical = if has_attitude { of_attitude } else { stated };
+    if has_attitude && apart > ROUNDING {
+        notes.push(format!(
+            "vertical: it is {apart:.1e} from the third row of the attitude, which is taken"
+        ));
     }
     let weight = body.along_axes(weight.0.into());
     body.notes.extend(notes);
@@ -82,10 +92,19 @@ fn read(mut keys: Keys) -> Result<Forms, ReadError> {
     Ok(Forms::of(momentum).or(Forms::of(attitude)).written(WithAttitude::STATE))
 }
 
-/// The least turn that brings a direction to e₃.
-fn upright(vertical: Vector3<f64>) -> Matrix3<f64> {
-    let turn = Rotation3::rotation_between(&vertical, &Vector3::z());
-    turn.map_or_else(|| Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0)), |g| g.into_inner())
+/// The least turn that brings a direction v to e₃: 𝟙 + a + a²/(1 + v₃), a the matrix of v × e₃.
+///
+/// v is its third row, to rounding. So a small tilt has all its digits.
+fn upright(v: Vector3<f64>) -> Matrix3<f64> {
+    let [x, y, z] = v.into();
+    let tilt = x * x + y * y;
+    // 1/(1 + z), and below the equator (1 − z)/(1 − z²).
+    let k = match z < 0.0 {
+        true if tilt == 0.0 => return Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0)),
+        true => (1.0 - z) / tilt,
+        false => 1.0 / (1.0 + z),
+    };
+    Matrix3::new(1.0 - x * x * k, -x * y * k, -x, -x * y * k, 1.0 - y * y * k, -y, x, y, z)
 }
 
 /// A top at a point.
@@ -119,6 +138,8 @@ trait TopCoordinates: Clone + Debug + Send + Sync + 'static {
     fn counted(spec: &TopSpec, start: Point<Self>) -> Option<Counting>;
     /// The pose of a point.
     fn pose(y: &Point<Self>) -> Pose;
+    /// The point with the axes of the body turned by this rotation.
+    fn turned(y: &Point<Self>, turn: &Matrix3<f64>) -> Point<Self>;
     /// The momentum about the vertical.
     fn about_vertical(top: &HeavyTop, y: &Point<Self>) -> f64 {
         let Pose { mu, gamma, .. } = Self::pose(y);
@@ -153,6 +174,9 @@ impl TopCoordinates for MomentumAndVertical {
     fn pose(&(mu, gamma): &Point<Self>) -> Pose {
         Pose { mu, gamma, orientation: Orientation::NotModelled }
     }
+    fn turned((mu, gamma): &Point<Self>, turn: &Matrix3<f64>) -> Point<Self> {
+        (turn * mu, turn * gamma)
+    }
 }
 
 /// g and the momentum in space.
@@ -179,6 +203,9 @@ impl TopCoordinates for WithAttitude {
     fn pose((g, m): &Point<Self>) -> Pose {
         let gamma = g.row(2).transpose();
         Pose { mu: g.tr_mul(m), gamma, orientation: Orientation::Matrix(*g) }
+    }
+    fn turned(y: &Point<Self>, turn: &Matrix3<f64>) -> Point<Self> {
+        driven_body::turned(y, turn)
     }
     /// Linear in the point, so that methods that leave the group keep it too.
     fn about_vertical(_: &HeavyTop, (_, m): &Point<Self>) -> f64 {
@@ -311,6 +338,17 @@ impl<R: TopCoordinates> System for Top<R> {
 
     fn layer(&self) -> Layer {
         Layer::Closed
+    }
+    fn numbers(&self, y: &PointOf<Self>) -> Vec<f64> {
+        let axes = self.spec.body.axes;
+        numbers_of(&mut axes.map_or_else(|| y.clone(), |axes| R::turned(y, &axes)))
+    }
+    fn set_point(&self, y: &mut PointOf<Self>, arg: &str, numbers: &[f64]) -> Result<(), Error> {
+        set_numbers(y, arg, numbers)?;
+        if let Some(axes) = self.spec.body.axes {
+            *y = R::turned(y, &axes.transpose());
+        }
+        Ok(())
     }
     fn problem(&self) -> Result<Start<Self::Problem>, Error> {
         let TopSpec { body, vertical, .. } = &self.spec;

@@ -25,7 +25,7 @@ keys! { Keys [sample_keys formula_keys] {
     spins: Option<Vec<Reals<3>>> = "initial directions, one row a spin, normalised",
     wave: Option<Wave> = "{count, turns, cone}, instead of spins: count spins at the angle cone to e3, \
                           that turn so often around it along the chain",
-    ring: Option<bool> = "are the ends joined? optional, true",
+    ring: Option<bool> = "are the ends joined? optional, true; two spins are then joined twice",
     exchange: Option<Texts> =
         "J, > 0 for a ferromagnet: a formula of t and of the site i = 1, 2, …, for the bond of i and i + 1; or three, \
          [Jx, Jy, Jz]; optional, 1",

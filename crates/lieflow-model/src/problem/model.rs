@@ -274,6 +274,15 @@ impl fmt::Debug for Source {
 }
 
 impl Model {
+    /// Lets a run follow the choices of these quantities, as the sign of a quaternion, from row to row alone. This is enough for
+    /// a figure. Otherwise they are followed between rows, too: twice for each radian that the state turns.
+    pub fn follow_from_row_to_row(&mut self, names: &[&str]) {
+        self.schema.follow_from_row_to_row(names);
+        if let Source::Model { base, .. } = &mut self.source {
+            Arc::make_mut(base).follow_from_row_to_row(names);
+        }
+    }
+
     /// The model with other rows: each number is made of a row of this one.
     pub(crate) fn mapped(self, schema: Schema, number: Arc<NumberOf<'static>>) -> Model {
         Model { schema, source: Source::Model { base: Arc::new(self), number } }

@@ -66,6 +66,18 @@ pub(crate) trait System: Clone + Debug + Send + Sync + 'static {
         let samples = self.formula()?.samples()?;
         Some(Stops::at_kinks(samples.knots(t_span).collect::<Vec<_>>()))
     }
+    /// The numbers of a point, as they are read and set from outside: in the frame in which the problem is stated. By default
+    /// those of the point itself, in the order of [`Numbers`](lieflow::space::Numbers).
+    fn numbers(&self, y: &PointOf<Self>) -> Vec<f64> {
+        numbers_of(&mut y.clone())
+    }
+    /// y ← the point of these [`numbers`](Self::numbers), which are called `arg`.
+    ///
+    /// # Errors
+    /// [`Error::Length`] for another number of them.
+    fn set_point(&self, y: &mut PointOf<Self>, arg: &str, numbers: &[f64]) -> Result<(), Error> {
+        set_numbers(y, arg, numbers)
+    }
     /// Checks a state that a run starts from in place of its own, beyond what the group and the action ask for.
     ///
     /// # Errors
@@ -165,7 +177,7 @@ impl<S: System> On<S> {
     fn start_at(&self, numbers: Option<&[f64]>) -> Result<PointOf<S>, Error> {
         let mut y = self.ready()?.1.clone();
         if let Some(numbers) = numbers {
-            set_numbers(&mut y, "y0", numbers)?;
+            self.system.set_point(&mut y, "y0", numbers)?;
             self.system.check_state(&y)?;
         }
         Ok(y)
@@ -177,6 +189,14 @@ impl<S: System> On<S> {
         Box::new(move |t, y, numbers| {
             append_values(&system, &quantities, Moment::of_run(t, t0), y, numbers);
         })
+    }
+
+    /// How the points of a run that starts at t0 are numbers.
+    fn points(&self, quantities: &[usize], t0: f64) -> Points<S::Problem> {
+        let [of, from] = [self.system.clone(), self.system.clone()];
+        let numbers = Box::new(move |y: &PointOf<S>| of.numbers(y));
+        let point = move |numbers: &[f64], y: &mut PointOf<S>| from.set_point(y, "state", numbers);
+        Points::by(self.shared(quantities, t0), numbers, Box::new(point))
     }
 
     /// The sizes of terms at y go to the end of `numbers`.
@@ -212,7 +232,7 @@ impl<S: System> Run for On<S> {
         self.system.modelled()
     }
     fn start(&self) -> Result<Vec<f64>, Error> {
-        Ok(numbers_of(&mut self.ready()?.1.clone()))
+        Ok(self.system.numbers(&self.ready()?.1))
     }
     fn drive(
         &self,
@@ -228,12 +248,12 @@ impl<S: System> Run for On<S> {
             self.sizes(asked, y, numbers);
         };
         let turn_rate = |t: f64, y: &PointOf<S>| {
-            let rates =
-                asked.quantities.iter().map(|&q| (S::QUANTITIES[q].turn_rate)(&self.system, t, y));
+            let followed = asked.quantities.iter().zip(asked.schema).filter(|(_, o)| o.is_followed);
+            let rates = followed.map(|(&q, _)| (S::QUANTITIES[q].turn_rate)(&self.system, t, y));
             rates.fold(0.0, f64::max)
         };
         let shared = || self.shared(asked.quantities, t0);
-        let points = Points::in_order(shared());
+        let points = self.points(asked.quantities, t0);
         let rows = RowsOf {
             schema: asked.schema,
             row_of: &row_of,
@@ -251,7 +271,7 @@ impl<S: System> Run for On<S> {
         steps: StepByStep<'_>,
     ) -> Result<Box<dyn Stepper>, RunError> {
         let problem = &self.ready()?.0;
-        let points = Points::in_order(self.shared(asked.quantities, steps.steps.t_span()[0]));
+        let points = self.points(asked.quantities, steps.steps.t_span()[0]);
         let y = self.start_at(steps.start)?;
         S::Problem::stepper(method, problem, y, StepByStep { start: None, ..steps }, points)
     }

@@ -283,7 +283,7 @@ impl Times {
     pub(super) fn at_knots(&self, has_knots: bool) -> Result<Option<bool>, Refusal> {
         match self.at_knots {
             Some(_) if !has_knots => {
-                let message = "`at_knots` is of `samples` and of magnets: the problem has neither";
+                let message = "`at_knots` is of `samples`, of magnets and of `pulse`: the problem has none of them";
                 Err(Refusal::at("at_knots", message))
             }
             given => Ok(given),

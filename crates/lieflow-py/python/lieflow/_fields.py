@@ -75,13 +75,15 @@ class State(Quantities):
 class CFunction:
     """The address of a C function as f: ``void f(double t, const double *y, double *v, const double *p)``.
 
-    y has the numbers of the point by rows, v gets the value of f and is 0 before, p is ``parameters``. The run calls it
+    y has the numbers of the point by rows, v gets the value of f and is 0 before, p is ``parameters``. Of
+    :class:`lieflow.Parts` both have vectors first, then rotations, then numbers. The run calls it
     without the interpreter. A wrong address cannot be seen and ends the program.
 
     Parameters
     ----------
     function : int, or an object with an address
-        An integer, ``numba.cfunc`` (its ``address``), a function of ctypes, or a ``scipy.LowLevelCallable``.
+        An integer, ``numba.cfunc`` (its ``address``), a function of ctypes, a ``PyCapsule``, or a
+        ``scipy.LowLevelCallable`` without ``user_data``, of any of its forms.
     parameters : array_like
         The numbers p.
     """
@@ -111,7 +113,16 @@ def address(function: Any) -> int:
     elif hasattr(function, "argtypes") and hasattr(function, "restype"):  # of ctypes
         found = ctypes.cast(function, ctypes.c_void_p).value or 0
     elif type(function).__name__ == "LowLevelCallable":
-        return address(function.function)
+        if function.user_data is not None:
+            raise ArgumentError("fun", "a LowLevelCallable with user_data", "one without; its numbers are `parameters`")
+        # The capsule with the address, whatever the function is.
+        return address(tuple.__getitem__(function, 0))
+    elif type(function).__name__ == "PyCapsule":
+        api = ctypes.pythonapi
+        api.PyCapsule_GetName.restype, api.PyCapsule_GetName.argtypes = ctypes.c_char_p, [ctypes.py_object]
+        api.PyCapsule_GetPointer.restype = ctypes.c_void_p
+        api.PyCapsule_GetPointer.argtypes = [ctypes.py_object, ctypes.c_char_p]
+        found = api.PyCapsule_GetPointer(function, api.PyCapsule_GetName(function))
     else:
         raise TypeError(f"fun: a value of type {type(function).__name__}, expected the address of a C function")
     if not 0 < found <= 2 * sys.maxsize + 1:
@@ -122,7 +133,8 @@ def address(function: Any) -> int:
 class Samples:
     """Sampled values as a function of time.
 
-    As f of :func:`lieflow.solve_ivp` it is a function of t alone; a step ends at each time where it is not smooth. As the
+    As f of :func:`lieflow.solve_ivp` it is a function of t alone; a step ends at each time where it is not smooth. Of
+    :class:`lieflow.Parts` its columns are the values of the parts, in the order of the parts. As the
     key ``samples`` of a problem its columns are variables of the formulas.
 
     Parameters
@@ -271,6 +283,14 @@ class Parts:
                 finite(f"{name}[{key!r}]", array)
             flat.append(array.ravel())
         return np.concatenate(flat)
+
+    def in_order(self, values: Array) -> Array:
+        """Return the columns of values of f, which are in the order of the parts, in the order of the point."""
+        places, at = {}, 0
+        for name in self.spaces:
+            _, of_value, _ = self._places[name]
+            places[name] = range(at, at := at + of_value.stop - of_value.start)
+        return values[:, [i for name in self._places for i in places[name]]]
 
     def columns(self) -> list[str]:
         """Return the names of the numbers of a point in formulas."""

@@ -111,7 +111,10 @@ class Integrator:
 
     @property
     def y(self) -> Any:
-        """The point; of a problem and of parts arrays by name. It may be set, but of a problem :attr:`state` is set."""
+        """A copy of the point; of a problem and of parts arrays by name.
+
+        It may be set: ``y = run.y``, change y, ``run.y = y``. Of a problem :attr:`state` is set.
+        """
         return self._shown(self._run.row())
 
     @y.setter
@@ -131,8 +134,9 @@ class Integrator:
     def state(self) -> Array:
         """The numbers that the method integrates; they may be set.
 
-        Those of a vector are in their order, of a matrix by rows; of a problem a matrix is by columns, and the parts of
-        a pair one after the other.
+        Those of a vector are in their order, of a matrix by rows, of parts vectors first, then rotations, then numbers;
+        of a problem a matrix is by columns, and the parts of a pair one after the other. Vectors and attitudes of a body
+        are in the frame in which its inertia is given.
         """
         return self._run.state()
 

@@ -262,6 +262,8 @@ class Ready:
             if fun.values.shape[1] != int(np.prod(self.space.value)):
                 expected = f"{int(np.prod(self.space.value))}, a value of f at each time"
                 raise ArgumentError("fun", f"samples of {fun.values.shape[1]} columns", expected)
+            if isinstance(self.group, Parts):
+                fun = Samples(fun.t, self.group.in_order(fun.values), fun.interpolation)
             self.kinks = fun._sampled.knots(span)
             self.linear = self.linear or self.space.has_linear_methods
             return fun._sampled

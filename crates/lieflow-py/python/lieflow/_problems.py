@@ -189,10 +189,16 @@ class Problem:
 
     def _form(self, model: Any, method: str) -> tuple[str, str, str]:
         """What the numbers of a state are of: the kind, the form of the model, and the keys if these say what is not there."""
-        form = model.form(method)
+        return self._form_of(model.form(method))
+
+    def _form_of(self, form: str) -> tuple[str, str, str]:
+        """What the numbers of a state of this form of the model are of."""
         # The attitude of a free body is a state alone: the keys have its momentum.
-        is_alone = type(self).kind == "rigid-body" and form.endswith("RigidBodyAttitude")
-        return type(self).kind, form, repr(sorted(self._keys.items())) if is_alone else ""
+        if type(self).kind == "rigid-body" and form.endswith("RigidBodyAttitude"):
+            return type(self).kind, form, repr(sorted(self._keys.items()))
+        if type(self).kind == "composed":
+            return type(self).kind, form, repr([(part.get("name"), part.get("space")) for part in self._keys["parts"]])
+        return type(self).kind, form, ""
 
     def _start(self, y0: Any, model: Any, method: str) -> Array | None:
         """The numbers of another state: the end of a run, these numbers, or a complex array."""
@@ -200,9 +206,11 @@ class Problem:
             return None
         if isinstance(y0, State):
             form = self._form(model, method)
-            if y0._of[:2] == form[:2] and y0._of != form:
+            if y0._of[:2] == form[:2] and y0._of != form and form[0] == "rigid-body":
                 expected = "that of a run with the same keys; replace(momentum_body=..., attitude=...) begins with its last row"
                 raise ArgumentError("y0", "an attitude alone, whose momentum the keys of the other problem say", expected)
+            if y0._of[:2] == form[:2] and y0._of != form:
+                raise ArgumentError("y0", "the end of a run of other parts", "the same parts in the same order")
             if y0._of != form:
                 expected = f"the end of a run of {type(self).kind!r} with the same quantities"
                 raise ArgumentError("y0", f"the end of another run, of {y0._of[0]!r}", expected)

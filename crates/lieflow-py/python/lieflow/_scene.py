@@ -9,6 +9,7 @@ from typing import Any
 
 from . import _lieflow
 from ._errors import RunError
+from ._fields import State
 from ._problems import Problem, _quietly
 from ._result import Layout, Result, warn_of_events
 
@@ -68,8 +69,9 @@ class Scene:
         rows = found["y"]
         found["y"] = layout.split(rows)
         found["y_events"] = [layout.split(y) for y in found["y_events"]]
-        at_end = len(rows) > 0 and found["t"][-1] == found["t_end"]
-        found["y_end"] = layout.split(rows[-1]) if at_end else None
+        end, form = found.pop("end"), found.pop("form")
+        problem = self.problem
+        found["y_end"] = None if end is None else State(layout.split(end[0]), end[1], problem._form_of(form))
 
         def again(_: Result) -> Any:
             raise RunError("a scene is not run again: solve_ivp(scene.problem, scene.t_span).estimate_error() has an estimate")

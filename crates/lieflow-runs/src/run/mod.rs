@@ -7,7 +7,7 @@ mod stepper;
 mod types;
 
 pub use operations::{CountOnVectors, Counting, counting};
-pub use stepper::{PointFrom, Points, StepByStep, Stepper};
+pub use stepper::{NumbersOf, PointFrom, Points, StepByStep, Stepper};
 
 use core::fmt::{self, Debug};
 use std::sync::Arc;

@@ -10,7 +10,7 @@ use lieflow::solve::{Integrator, Stops};
 use lieflow::space::Numbers;
 use lieflow::{Error, RunError, Solve, Stats};
 
-use super::{Runnable, SharedRowOf, Steps, numbers_of, set_numbers};
+use super::{Runnable, SharedRowOf, Steps};
 
 /// A run that the caller takes step by step. It owns its problem.
 pub trait Stepper: Send {
@@ -61,6 +61,8 @@ pub trait Stepper: Send {
 }
 
 /// What makes a point of numbers.
+pub type NumbersOf<Y> = Box<dyn Fn(&Y) -> Vec<f64> + Send + Sync>;
+/// Sets a point by its numbers.
 pub type PointFrom<Y> = Box<dyn Fn(&[f64], &mut Y) -> Result<(), Error> + Send + Sync>;
 
 /// A run that is taken step by step: its steps, the times at which a step ends, and the numbers of its start, if it is not
@@ -88,35 +90,35 @@ impl From<Steps> for StepByStep<'_> {
 pub struct Points<P: Runnable> {
     /// The values of the row.
     pub row_of: Box<SharedRowOf<P>>,
-    /// The numbers of a point.
-    pub numbers: fn(&SharedRowOf<P>, f64, &PointOf<P>) -> Vec<f64>,
+    /// The numbers of a point; those of its row where there is none.
+    numbers: Option<NumbersOf<PointOf<P>>>,
     /// The point of numbers.
     pub point: PointFrom<PointOf<P>>,
 }
 
 impl<P: Runnable> Points<P> {
-    /// The numbers of a point in the order of [`Numbers`].
-    pub fn in_order(row_of: Box<SharedRowOf<P>>) -> Self {
-        Points {
-            row_of,
-            numbers: |_, _, y| numbers_of(&mut y.clone()),
-            point: Box::new(|numbers, y| set_numbers(y, "state", numbers)),
-        }
-    }
-
-    /// The numbers of a point.
-    pub fn numbers_of(&self, t: f64, y: &PointOf<P>) -> Vec<f64> {
-        (self.numbers)(&self.row_of, t, y)
+    /// By the numbers of a point, and the point of numbers.
+    pub fn by(
+        row_of: Box<SharedRowOf<P>>,
+        numbers: NumbersOf<PointOf<P>>,
+        point: PointFrom<PointOf<P>>,
+    ) -> Self {
+        Points { row_of, numbers: Some(numbers), point }
     }
 
     /// The numbers of a point are those of its row.
     pub fn by_rows(row_of: Box<SharedRowOf<P>>, point: PointFrom<PointOf<P>>) -> Self {
-        let numbers = |row_of: &SharedRowOf<P>, t: f64, y: &PointOf<P>| {
-            let mut numbers = Vec::new();
-            row_of(t, y, &mut numbers);
-            numbers
-        };
-        Points { row_of, numbers, point }
+        Points { row_of, numbers: None, point }
+    }
+
+    /// The numbers of a point.
+    pub fn numbers_of(&self, t: f64, y: &PointOf<P>) -> Vec<f64> {
+        if let Some(numbers) = &self.numbers {
+            return numbers(y);
+        }
+        let mut numbers = Vec::new();
+        (self.row_of)(t, y, &mut numbers);
+        numbers
     }
 }
 

@@ -131,6 +131,8 @@ pub struct Observable {
     pub parts: Vec<Component>,
     /// What a run chooses so that the columns are continuous.
     pub branch: Branch,
+    /// Is that choice followed between rows, at points for each radian that the state turns? Else from row to row.
+    pub is_followed: bool,
     /// The shape of its values as an array, rows first; none of a number.
     pub shape: Vec<usize>,
     /// The numbers in that array.
@@ -207,6 +209,7 @@ impl Schema {
             is_distance: false,
             parts,
             branch,
+            is_followed: true,
             shape,
             numbers,
             place,
@@ -255,6 +258,12 @@ impl Schema {
         if let Some(observable) = self.observables.last_mut() {
             observable.branch = branch;
         }
+    }
+
+    /// Let a run follow these observables from row to row alone, as is enough for a figure.
+    pub fn follow_from_row_to_row(&mut self, names: &[&str]) {
+        let named = |observable: &&mut Observable| names.contains(&observable.name);
+        self.observables.iter_mut().filter(named).for_each(|one| one.is_followed = false);
     }
 
     /// The longest time between two points of a run for which the choices of all its values are sure, if one is bounded.

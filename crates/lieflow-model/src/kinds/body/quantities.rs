@@ -26,14 +26,40 @@ impl Orientation {
             Orientation::Quaternion(q) => rotation(q),
         }
     }
-    /// The quaternion; one of the two of a matrix, and NaN where the matrix is no rotation.
+    /// The quaternion; one of the two of the polar factor of a matrix, and NaN where the matrix is far from all rotations.
     pub(in crate::kinds) fn quaternion(&self) -> UnitQuaternion<f64> {
         if let Orientation::Quaternion(q) = self {
             return *q;
         }
         let nan = UnitQuaternion::new_unchecked([f64::NAN; 4].into());
-        quaternion_from_matrix(&self.rotation()).unwrap_or(nan)
+        let rotation = self.rotation();
+        quaternion_from_matrix(&rotation)
+            .or_else(|_| quaternion_from_matrix(&nearer(rotation)))
+            .unwrap_or(nan)
     }
+    /// The same with the axes of the body turned by this rotation.
+    pub(in crate::kinds) fn about(self, turn: &Matrix3<f64>) -> Self {
+        match self {
+            Orientation::NotModelled => Orientation::NotModelled,
+            Orientation::Matrix(g) => Orientation::Matrix(g * turn.transpose()),
+            Orientation::Quaternion(q) => {
+                let turn =
+                    quaternion_from_matrix(turn).unwrap_or_else(|_| UnitQuaternion::identity());
+                Orientation::Quaternion(q * turn.conjugate())
+            }
+        }
+    }
+}
+
+/// Newton–Schulz steps to the polar factor. Each squares the distance.
+const NEARER: usize = 6;
+
+/// A matrix near the rotations, as methods that leave the group make them, nearer to its polar factor: by Newton–Schulz steps.
+fn nearer(mut g: Matrix3<f64>) -> Matrix3<f64> {
+    for _ in 0..NEARER {
+        g = g * (Matrix3::identity() * 1.5 - g.tr_mul(&g) * 0.5);
+    }
+    g
 }
 
 /// A system with a rotation from body to space.

@@ -52,7 +52,7 @@ keys! { Keys [sample_keys formula_keys] {
     field_imaginary: Option<Vec<Texts>> =
         "of u and su: the imaginary part of f, n rows of n formulas; optional, 0",
     start: Option<Table> =
-        "initial point, n rows, of n numbers but for linear; for translation in the group and optional, the \
+        "initial point, n rows, of n numbers, for linear of 1 to 9; for translation in the group and optional, the \
          identity; for lagrangian symmetric, n/2 rows of n/2",
     start_imaginary: Option<Table> = "of u and su: its imaginary part; optional, 0",
 } }
@@ -211,9 +211,15 @@ fn start(
     };
     let (rows, columns) = match action {
         MatrixAction::Lagrangian => (n / 2, n / 2),
-        MatrixAction::Linear => (n, start.ncols().min(NAMED_MAX)),
+        MatrixAction::Linear => (n, start.ncols()),
         _ => (n, n),
     };
+    if columns > NAMED_MAX {
+        return Err(refused(format!(
+            "found rows of {columns} numbers, expected at most {NAMED_MAX}"
+        ))
+        .into());
+    }
     if (start.nrows(), start.ncols()) != (rows, columns) {
         let (found, of) = (start.nrows(), start.ncols());
         return Err(refused(format!(

@@ -4,6 +4,7 @@
 use lieflow::dense::{norm, squared_norm};
 use lieflow::groups::MEMBERSHIP;
 use lieflow::problems::{density_matrix, populations_of, von_neumann};
+use lieflow::solve::Stops;
 use lieflow_runs::spaces::{MatrixAction, OnMatrices};
 
 use super::super::entries::{ROUNDING, eigenvalues, numbered, symmetric, upper_columns};
@@ -122,6 +123,9 @@ impl System for Mixture {
         .in_terms(|_, rho| norm(rho.as_ref())),
     ];
 
+    fn knots(&self, t_span: [f64; 2]) -> Option<Stops> {
+        self.hamiltonian.knots(t_span)
+    }
     fn problem(&self) -> Result<Start<OnMatrices>, Error> {
         let hamiltonian = self.hamiltonian.clone();
         let equation = von_neumann(self.hamiltonian.n, move |t, i, j| hamiltonian.entry(t, i, j))?;

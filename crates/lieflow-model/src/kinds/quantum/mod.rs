@@ -14,6 +14,7 @@ use std::sync::Arc;
 use lieflow::dense::largest_entry;
 use lieflow::problems::amplitudes;
 use lieflow::scalar::{Ops, tally};
+use lieflow::solve::Stops;
 
 pub(super) use self::mixed::KIND as DENSITY_MATRIX;
 pub(super) use self::pure::KIND as SCHRODINGER;
@@ -85,6 +86,11 @@ struct Drive {
     phase: f64,
     pulse: Option<[f64; 2]>,
 }
+
+/// A width that is a smaller part of the span is one of a short pulse.
+const SHORT: f64 = 0.01;
+/// Where steps end within a short pulse, in widths from its centre. Beyond, the pulse is rounding.
+const PULSE: [f64; 7] = [-6.0, -4.0, -2.0, 0.0, 2.0, 4.0, 6.0];
 
 /// The keys of the two parts.
 const PARTS: [&str; 2] = ["hamiltonian", "hamiltonian_imaginary"];
@@ -164,6 +170,17 @@ impl Hamiltonian {
         }
     }
 
+    /// Where steps end: at knots of samples, and within a pulse that is short beside the span, which steps would pass over.
+    fn knots(&self, [t0, t1]: [f64; 2]) -> Option<Stops> {
+        if let Some(samples) = self.formula().and_then(Formula::samples) {
+            return Some(Stops::at_kinks(samples.knots([t0, t1]).collect::<Vec<_>>()));
+        }
+        let Of::Drive(Drive { pulse: Some([at, width]), .. }) = self.of else { return None };
+        let is_short = width < SHORT * (t1 - t0).abs();
+        let within = PULSE.map(|part| at + part * width).into_iter();
+        let within = within.filter(|t| is_short && t0.min(t1) < *t && *t < t0.max(t1));
+        Some(Stops::at_kinks(within.collect::<Vec<_>>()))
+    }
     fn check_start(&self, t0: f64) -> Vec<Refusal> {
         match &self.of {
             Of::Formulas(stated) => stated.check(self.n, t0),

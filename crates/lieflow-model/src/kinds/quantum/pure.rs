@@ -4,6 +4,7 @@
 use lieflow::dense::squared_norm;
 use lieflow::groups::MEMBERSHIP;
 use lieflow::problems::{populations, schrodinger};
+use lieflow::solve::Stops;
 use lieflow_runs::spaces::{MatrixAction, OnMatrices};
 
 use super::super::entries::numbered;
@@ -69,6 +70,9 @@ impl System for Levels {
             .kept(Law::by_the_action(2)),
     ];
 
+    fn knots(&self, t_span: [f64; 2]) -> Option<Stops> {
+        self.hamiltonian.knots(t_span)
+    }
     fn problem(&self) -> Result<Start<OnMatrices>, Error> {
         let hamiltonian = self.hamiltonian.clone();
         let equation = schrodinger(self.hamiltonian.n, move |t, i, j| hamiltonian.entry(t, i, j))?;

@@ -11,7 +11,7 @@
 
 use core::fmt::Debug;
 
-use lieflow::groups::{GroupMatrix, LieGroup, MatrixGroup, UnitQuaternions, hat, vee};
+use lieflow::groups::{GroupMatrix, LieGroup, UnitQuaternions, hat, vee};
 use lieflow::problems::{
     BodyState, RigidBody, RigidBodyAttitude, RigidBodyN, RigidBodyNAttitude, RigidBodyQuaternion,
     RigidBodyState,
@@ -21,7 +21,7 @@ use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 use crate::kinds::body::*;
 use crate::kinds::prelude::*;
-use crate::problem::{PointOf, Runnable, SERIES};
+use crate::problem::{PointOf, Runnable, SERIES, numbers_of, set_numbers};
 
 /// Where a body is: its momentum in the body, and its orientation where that is modelled.
 pub(super) struct Pose {
@@ -48,10 +48,7 @@ pub(super) trait BodyCoordinates: Clone + Debug + Send + Sync + 'static {
     /// What the library refuses.
     fn problem(spec: &RigidBodySpec) -> Result<Self::Problem, Error>;
     /// The point of a pose.
-    ///
-    /// # Errors
-    /// [`Error::NotOnGroup`] for an orientation that is no rotation.
-    fn point(pose: &Pose) -> Result<Point<Self>, Error>;
+    fn point(pose: &Pose) -> Point<Self>;
     /// The pose of a point.
     fn pose(problem: &Self::Problem, y: &Point<Self>) -> Pose;
     /// See [`System::counted`].
@@ -82,8 +79,8 @@ impl BodyCoordinates for MomentumOnly {
     fn problem(spec: &RigidBodySpec) -> Result<RigidBody, Error> {
         RigidBody::new(spec.inertia)
     }
-    fn point(pose: &Pose) -> Result<Vector3<f64>, Error> {
-        Ok(pose.m)
+    fn point(pose: &Pose) -> Vector3<f64> {
+        pose.m
     }
     fn counted(spec: &RigidBodySpec, start: Point<Self>) -> Option<Counting> {
         let body = RigidBody::<Counted>::new(spec.inertia).ok()?;
@@ -108,8 +105,8 @@ impl BodyCoordinates for Attitude {
         let (inertia, m) = (spec.inertia, spec.momentum_space());
         RigidBodyAttitude::new(inertia, m.into())
     }
-    fn point(pose: &Pose) -> Result<Matrix3<f64>, Error> {
-        Ok(pose.orientation.rotation())
+    fn point(pose: &Pose) -> Matrix3<f64> {
+        pose.orientation.rotation()
     }
     fn counted(spec: &RigidBodySpec, start: Point<Self>) -> Option<Counting> {
         let body =
@@ -134,8 +131,8 @@ impl BodyCoordinates for State {
     fn problem(spec: &RigidBodySpec) -> Result<RigidBodyState, Error> {
         RigidBodyState::new(spec.inertia)
     }
-    fn point(pose: &Pose) -> Result<BodyState, Error> {
-        Ok(BodyState { m: pose.m, g: pose.orientation.rotation() })
+    fn point(pose: &Pose) -> BodyState {
+        BodyState { m: pose.m, g: pose.orientation.rotation() }
     }
     fn counted(spec: &RigidBodySpec, start: Point<Self>) -> Option<Counting> {
         let body = RigidBodyState::<Counted>::new(spec.inertia).ok()?;
@@ -163,8 +160,8 @@ impl BodyCoordinates for Quaternion {
         let (inertia, m) = (spec.inertia, spec.momentum_space());
         RigidBodyQuaternion::new(inertia, m.into())
     }
-    fn point(pose: &Pose) -> Result<UnitQuaternion<f64>, Error> {
-        Ok(pose.orientation.quaternion())
+    fn point(pose: &Pose) -> UnitQuaternion<f64> {
+        pose.orientation.quaternion()
     }
     fn pose(body: &RigidBodyQuaternion, q: &UnitQuaternion<f64>) -> Pose {
         Pose { m: body.momentum_body(q), orientation: Orientation::Quaternion(*q) }
@@ -184,8 +181,8 @@ impl BodyCoordinates for MomentumMatrix {
     fn problem(spec: &RigidBodySpec) -> Result<RigidBodyN, Error> {
         RigidBodyN::from_principal(spec.inertia)
     }
-    fn point(pose: &Pose) -> Result<Mat<f64>, Error> {
-        Ok(to_faer(&hat(&pose.m)))
+    fn point(pose: &Pose) -> Mat<f64> {
+        to_faer(&hat(&pose.m))
     }
     fn pose(_: &RigidBodyN, m: &Mat<f64>) -> Pose {
         Pose { m: vee(&to_nalgebra(m)), orientation: Orientation::NotModelled }
@@ -206,8 +203,8 @@ impl BodyCoordinates for AttitudeMatrix {
         let (inertia, m) = (spec.inertia, spec.momentum_space());
         RigidBodyNAttitude::new(RigidBodyN::from_principal(inertia)?, to_faer(&hat(&m)))
     }
-    fn point(pose: &Pose) -> Result<GroupMatrix, Error> {
-        MatrixGroup::so(3)?.element(to_faer(&pose.orientation.rotation()))
+    fn point(pose: &Pose) -> GroupMatrix {
+        GroupMatrix::new_unchecked(to_faer(&pose.orientation.rotation()))
     }
     fn pose(body: &RigidBodyNAttitude, g: &GroupMatrix) -> Pose {
         Pose {
@@ -234,6 +231,14 @@ impl<R: BodyCoordinates> Body<R> {
     pub(super) fn new(spec: &RigidBodySpec) -> Result<Self, Error> {
         let body = RigidBody::new(spec.inertia)?;
         Ok(Body { spec: spec.clone(), body, problem: R::problem(spec)? })
+    }
+}
+
+impl<R: BodyCoordinates> Body<R> {
+    /// The point with the axes of the body turned by this rotation.
+    fn turned(&self, y: &PointOf<Self>, turn: &Matrix3<f64>) -> PointOf<Self> {
+        let Pose { m, orientation } = R::pose(&self.problem, y);
+        R::point(&Pose { m: turn * m, orientation: orientation.about(turn) })
     }
 }
 
@@ -299,6 +304,17 @@ impl<R: BodyCoordinates> System for Body<R> {
 
     const DEFAULT_METHOD: Option<&'static str> = Some(SERIES);
 
+    fn numbers(&self, y: &PointOf<Self>) -> Vec<f64> {
+        let mut y = self.spec.axes.map_or_else(|| y.clone(), |axes| self.turned(y, &axes));
+        numbers_of(&mut y)
+    }
+    fn set_point(&self, y: &mut PointOf<Self>, arg: &str, numbers: &[f64]) -> Result<(), Error> {
+        set_numbers(y, arg, numbers)?;
+        if let Some(axes) = self.spec.axes {
+            *y = self.turned(y, &axes.transpose());
+        }
+        Ok(())
+    }
     fn layer(&self) -> Layer {
         R::LAYER
     }
@@ -308,7 +324,7 @@ impl<R: BodyCoordinates> System for Body<R> {
             None => Orientation::Matrix(self.spec.attitude),
         };
         let pose = Pose { m: self.spec.momentum_body.into(), orientation };
-        Ok((R::problem(&self.spec)?, R::point(&pose)?))
+        Ok((R::problem(&self.spec)?, R::point(&pose)))
     }
     fn counted(&self) -> Option<Counting> {
         R::counted(&self.spec, self.problem().ok()?.1)
@@ -338,7 +354,7 @@ impl<R: BodyCoordinates> System for Body<R> {
                 true => exact.state(t).map(|(m, g)| (m, Orientation::Matrix(g)))?,
                 false => (exact.momentum_body(t)?, Orientation::NotModelled),
             };
-            R::point(&Pose { m, orientation })
+            Ok(R::point(&Pose { m, orientation }))
         };
         Some(at(t1 - t0))
     }
