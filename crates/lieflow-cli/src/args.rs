@@ -449,7 +449,7 @@ A scene file with everything that it can say about a rigid body:
   attitude = [[1,0,0],[0,1,0],[0,0,1]]
                                     # body to space; optional
   [method]                          # optional: adaptive, of order 8
-  name = \"rkmk4\"                    # lieflow methods lists the names
+  name = \"rkmk\"                     # lieflow methods lists the names
   map = \"exp\"                       # optional: exp
   tableau = \"heun\"                  # optional: rk4; for rkmk and rk only
   q = 2                             # optional: cut of the Baker series; for exp only
@@ -457,10 +457,10 @@ A scene file with everything that it can say about a rigid body:
   [time]
   t_span = [0.0, 400.0]             # may run backward; may end at inf where an event stops it
   dt = 0.05                         # or steps = 8000; optional: steps chosen by their error
-  rtol = 1e-9                       # instead of dt; the error of a step is at most
-  atol = 1e-12                      # atol + rtol times the size; optional: 0; one is needed
-  tolerance = \"per-step\"            # optional; \"per-length\": rtol is relative to the length of the step
-  h_init = 0.01                     # optional, as are h_min, h_max, max_steps
+  # rtol = 1e-9                     # instead of dt; the error of a step is at most
+  # atol = 1e-12                    # atol + rtol times the size; optional: 0; one is needed
+  # tolerance = \"per-step\"          # optional; \"per-length\": rtol is relative to the length of the step
+  # h_init = 0.01                   # optional, as are h_min, h_max, max_steps
   [[events]]                        # optional; any number of them
   name = \"flip\"
   when = \"m2\"                       # a column, or a formula of columns, t and parameters
@@ -469,7 +469,7 @@ A scene file with everything that it can say about a rigid body:
   [output]                          # optional
   quantities = [\"momentum_body\"]    # optional; lieflow scenes lists what there is
   every = 10                        # or count = 100, interval = 4.0, times = [1.5, 20]
-  times_by = \"dense\"                # optional, with times; or steps
+  # times_by = \"dense\"              # optional, with times; or steps
   error_check = true                # optional: false makes no second run to estimate the error
 
 Written: trajectory.csv, a column t and the columns of each quantity, 17 significant digits, the

@@ -187,7 +187,11 @@ pub fn run_scene(
     Options { resume, no_page, error_check, most, any_length }: Options,
     stop: &AtomicBool,
 ) -> Result<Summary, CliError> {
-    let model = scene.model_with(scene.layer, &quantities(scene))?;
+    let all = quantities(scene);
+    let mut model = scene.model_with(scene.layer, &all)?;
+    let asked = scene.computed();
+    let others: Vec<&str> = all.into_iter().filter(|name| !asked.contains(name)).collect();
+    model.follow_from_row_to_row(&others);
     if let Some(known) = foresee(scene, &model, any_length, stop)? {
         eprintln!("note: {}: {known}", scene.name);
     }

@@ -202,7 +202,18 @@ pub fn speed_against_error(
                 let (method, shortest) = (&curve.candidate.method, effort.shortest.as_secs_f64());
                 let seconds =
                     job.size.seconds(&models.timed, method, &judge.course, &Rows::ENDS, shortest);
-                let seconds = seconds.map_err(CliError::Message)?;
+                let seconds = match seconds {
+                    Ok(seconds) => seconds,
+                    // With what is written a run may fail that reached its end without it.
+                    Err(failure) => {
+                        if let Some(point) = lines[job.curve].point_of(job.size) {
+                            point.failure = Some(failure);
+                        }
+                        job.times = vec![f64::NAN; effort.rounds as usize];
+                        tick(share)?;
+                        continue;
+                    }
+                };
                 job.times.push(seconds);
                 if let Some(journal) = &mut journal {
                     journal.saw_time(&job.key, seconds)?;

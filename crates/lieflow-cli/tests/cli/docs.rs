@@ -108,6 +108,20 @@ fn every_scene_on_a_page_runs() {
     assert!(count >= 9, "only {count} scenes were found");
 }
 
+/// The scenes that `lieflow run --help` shows.
+#[test]
+fn every_scene_of_the_help_runs() {
+    let folder = Folder::new();
+    let help = folder.lieflow(&["run", "--help"]).ok();
+    let parts: Vec<&str> = help.split("  [problem]\n").collect();
+    assert!(parts.len() >= 3, "{help}");
+    for part in &parts[1..] {
+        let scene: Vec<&str> = part.lines().map_while(|line| line.strip_prefix("  ")).collect();
+        folder.write("scene.toml", &format!("[problem]\n{}\n", scene.join("\n")));
+        folder.lieflow(&["run", "scene.toml"]).ok();
+    }
+}
+
 /// The one result of the README: how far both methods have left the rotations after 8000 steps.
 #[test]
 fn the_result_of_the_readme() {

@@ -184,6 +184,36 @@ fn the_steps_that_are_advised_were_taken() {
     }
 }
 
+/// With the quantities that are written a method may fail that reaches the end without them: then it has no time.
+#[test]
+fn a_method_that_fails_with_its_rows_is_left_out() {
+    let folder = Folder::new();
+    let args =
+        ["compare", "wing-nut", "--quick", "--repeat", "1", "--error", "1e-3", "--out", "out"];
+    folder.lieflow(&[&args[..], &["--methods", "lewis-simo,rkmk4 exp,taylor11"]].concat()).ok();
+    let json = folder.json("out/speed.json");
+    assert!(json["answers"][0]["best"]["method"].is_string(), "{json}");
+}
+
+/// The sign of a quaternion that is only drawn costs no points within the steps.
+#[test]
+fn a_figure_costs_no_points_for_each_radian() {
+    let folder = Folder::new();
+    let within = |quantity: &str| {
+        folder.write(
+            "scene.toml",
+            &format!(
+                "[problem]\nkind = \"rigid-body\"\ninertia = [1, 2, 2.5]\nomega_body = [30, 100, 50]\n[method]\n\
+                 name = \"exact\"\n[time]\nt_span = [0, 100]\nsteps = 100\n[output]\nquantities = [\"{quantity}\"]\n"
+            ),
+        );
+        folder.lieflow(&["run", "scene.toml", "--out", "out", "--no-page"]).ok();
+        folder.json("out/summary.json")["side_steps"].as_u64().expect("a count")
+    };
+    assert!(within("quaternion") > 10_000);
+    assert!(within("attitude") < 1_000);
+}
+
 #[test]
 fn an_invariant_may_be_kept_for_long_times() {
     let folder = Folder::new();

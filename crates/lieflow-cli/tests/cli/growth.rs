@@ -146,6 +146,55 @@ fn the_tolerance_of_a_start_that_grows_is_told() {
     folder.lieflow(&["run", "scene.toml", "--out", "out", "--no-page"]).ok();
 }
 
+/// A run of the settings that are advised states the digits that were promised, also where f jumps.
+#[test]
+fn the_digits_of_an_advice_hold_at_jumps() {
+    let folder = Folder::new();
+    let said = |rtol: &str| {
+        let scene = format!(
+            "[problem]\nkind = \"driven-body\"\ninertia = [0.476897896587, 0.730901154392, 0.98286786027]\n\
+             omega_body = [-0.4477, -0.8995, -0.543]\ntorque = [0, 0, \"0.3474*sign(sin(1.285*t))\"]\n[method]\n\
+             name = \"cf-ls4\"\n[time]\nt_span = [0, 17.7]\nrtol = {rtol}\n[output]\n\
+             quantities = [\"momentum_space\", \"attitude\"]\ncount = 20\n"
+        );
+        folder.write("scene.toml", &scene);
+        folder.lieflow(&["run", "scene.toml", "--out", "out", "--no-page"]).ok()
+    };
+    let digits = |text: &str| -> u32 {
+        let (_, digits) = text.split_once("about ").expect(text);
+        digits.split(' ').next().unwrap().parse().expect(text)
+    };
+    let poor = said("0.1");
+    let (_, advice) = poor.split_once("rtol = ").expect(&poor);
+    let promised = digits(advice);
+    let good = said(advice.split(' ').next().unwrap());
+    assert!(digits(&good) >= promised, "{poor}\n{good}");
+}
+
+/// Steps end within a pulse that is stated by its centre and its width: it is not passed over. Right is
+/// sin²(10 · 0.01 · √π).
+#[test]
+fn a_pulse_that_is_stated_is_met() {
+    let folder = Folder::new();
+    for (kind, start) in
+        [("schrodinger", "amplitudes = [1, 0]"), ("density-matrix", "density = [[1, 0], [0, 0]]")]
+    {
+        folder.write(
+            "scene.toml",
+            &format!(
+                "[problem]\nkind = \"{kind}\"\n{start}\nenergies = [0, 0.01]\ncoupling = [[0, 10], [10, 0]]\n\
+                 pulse = [317.73, 0.01]\n[time]\nt_span = [0, 1000]\n[output]\nquantities = [\"populations\"]\n"
+            ),
+        );
+        folder.lieflow(&["run", "scene.toml", "--out", "out", "--no-page"]).ok();
+        let p = folder.json("out/summary.json")["final"]["p2"].as_f64().unwrap();
+        assert!(
+            (p - (0.1 * std::f64::consts::PI.sqrt()).sin().powi(2)).abs() < 1e-8,
+            "{kind}: {p}"
+        );
+    }
+}
+
 /// Near a saddle small errors grow, and no pulse is passed over.
 #[test]
 fn growth_is_not_taken_for_a_pulse() {

@@ -15,7 +15,7 @@ use lieflow::solve::{Next, Stats, Status};
 use lieflow::tolerance::Tolerance;
 use lieflow::{SaveAt, TimeGrid};
 use lieflow_model::problem::{Outcome, Plan, Steps, Watcher, stop_after_hardest};
-use lieflow_model::scene::{Scene, default_tolerances};
+use lieflow_model::scene::Scene;
 use lieflow_model::schema::{Component, Observable, Row};
 
 use self::advice::POOR;
@@ -104,12 +104,29 @@ struct Way {
     largest: Option<f64>,
     /// Are steps of one size split?
     split: bool,
-    /// Is the tolerance rtol alone, without atol?
-    rtol_alone: bool,
+    /// rtol and atol before the factor, where they are others than those of the scene.
+    tolerances: Option<[f64; 2]>,
+    /// Where a step ends.
+    ends: Ends,
 }
 
-const OWN: Way =
-    Way { default: false, factor: 1.0, largest: None, split: false, rtol_alone: false };
+/// Where a step of another run ends: so it sees a short pulse that a run has seen.
+#[derive(Clone, Copy)]
+enum Ends {
+    /// Where the motion was the hardest for the run that is checked.
+    AtHardest,
+    /// There, or nowhere.
+    At(Option<f64>),
+}
+
+const OWN: Way = Way {
+    default: false,
+    factor: 1.0,
+    largest: None,
+    split: false,
+    tolerances: None,
+    ends: Ends::AtHardest,
+};
 
 /// The steps that a run took.
 #[derive(Clone, Copy, Default)]
@@ -218,8 +235,10 @@ impl<'a> Check<'a> {
                 false => format!("{} in the second run", zeros.other.possible),
             };
             Some(format!(
-                "event `{}` has {} zeros in this run, and {others}: take smaller steps or a smaller tolerance",
-                event.name, zeros.own.possible
+                "event `{}` has {} {} in this run, and {others}: take smaller steps or a smaller tolerance",
+                event.name,
+                zeros.own.possible,
+                if zeros.own.possible == 1 { "zero" } else { "zeros" }
             ))
         });
         let other_zeros = other_zeros.collect();
@@ -339,10 +358,9 @@ impl<'a> Check<'a> {
         }
     }
 
-    /// The plan of a run to time t. A step ends where the motion was the hardest for the run: so it sees a short pulse that
-    /// the run has seen.
+    /// The plan of a run to time t.
     fn plan(&self, way: Way, t: f64) -> Result<Plan<'static>, String> {
-        let Way { default, factor, largest, split, rtol_alone } = way;
+        let Way { default, factor, largest, split, tolerances, ends } = way;
         let plan = match default {
             true => {
                 let order = self.watch.model.order(&self.method(way));
@@ -351,27 +369,21 @@ impl<'a> Check<'a> {
             false => self.scene().plan_to(t, factor, largest),
         };
         let mut plan = plan.map_err(|error| error.to_string())?;
-        plan.stops.kinks.extend(self.own.hardest);
-        match &mut plan.steps {
-            Steps::Equal(grid) if split => *grid = grid.split(),
-            Steps::ByError { control, .. } if rtol_alone => {
+        plan.stops.kinks.extend(match ends {
+            Ends::AtHardest => self.own.hardest,
+            Ends::At(place) => place,
+        });
+        match (&mut plan.steps, tolerances) {
+            (Steps::Equal(grid), _) if split => *grid = grid.split(),
+            (Steps::ByError { control, .. }, Some([rtol, atol])) => {
                 let rule = control.tolerance().rule();
-                let alone = Tolerance::new(factor * self.rtol(way), 0.0);
-                let alone = alone.map_err(|error| error.to_string())?;
-                *control = control.clone().with_tolerance(alone.by(rule));
+                let other = Tolerance::new(factor * rtol, factor * atol);
+                let other = other.map_err(|error| error.to_string())?;
+                *control = control.clone().with_tolerance(other.by(rule));
             }
             _ => {}
         }
         Ok(plan)
-    }
-
-    /// rtol of a way to run, without its factor; 0 for steps of one size.
-    fn rtol(&self, way: Way) -> f64 {
-        let order = || self.watch.model.order(&self.method(way)).ok().flatten();
-        match way.default {
-            true => default_tolerances(order(), &[])[0],
-            false => self.scene().tolerances().map_or(0.0, |both| both[0]),
-        }
     }
 
     fn limits<'c>(&'c self, cancel: &'c AtomicBool) -> Limits<'c> {
@@ -446,7 +458,8 @@ impl<'a> Check<'a> {
         let order = order.ok_or("the method has no order")?;
         // The error of steps of one size goes with the power p of the size, that of a tolerance with p/(p + 1) of it.
         // The default is beyond the smallest.
-        let tolerances = if way.default { Some([0.0; 2]) } else { self.scene().tolerances() };
+        let tolerances = way.tolerances.or_else(|| self.scene().tolerances());
+        let tolerances = if way.default { Some([0.0; 2]) } else { tolerances };
         let tolerance = tolerances.map(|both| way.factor * both[0].max(both[1]));
         let halved = 1.0 / (1.0 - 0.5_f64.powi(order as i32));
         // A step that is a tenth of the tolerance long, in terms of one by the tolerance; the error goes with its power p.
@@ -516,7 +529,9 @@ impl<'a> Check<'a> {
     /// The errors of another run at these times, if they can be found; none inside if that run is poor, too.
     fn tried(&self, way: Way, times: &[f64]) -> Option<Option<Accuracy>> {
         let clock = Instant::now();
-        let (rows, taken) = self.rows_at(way, times).ok()?;
+        // The run itself, as a user takes it. Others beside it see what was the hardest for it.
+        let (rows, taken) = self.rows_at(Way { ends: Ends::At(None), ..way }, times).ok()?;
+        let way = Way { ends: Ends::At(taken.hardest), ..way };
         // The rows of a run that blew up are larger than the motion.
         let schema = self.watch.model.schema();
         let sizes: Vec<Size> = parts_of(self.watch)
