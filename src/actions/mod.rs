@@ -107,8 +107,8 @@ pub trait Action<G: LieGroup>: Send + Sync {
         y.error_ratio(Gap::relative(group.norm(e)), scales)
     }
 
-    /// An error e ∈ 𝔤 of a step from y to z in units of the tolerance. By default that at y; at z where y is 0 and has no
-    /// tolerance.
+    /// An error e ∈ 𝔤 of a step from y to z in units of the tolerance. By default the ratio at y. If y is 0 and atol is 0, the
+    /// ratio at z.
     #[inline]
     fn error_ratio_of_step(
         &self,

@@ -117,7 +117,7 @@ impl MethodSpec {
         let info = info.ok_or_else(|| unknown("method", &self.name, names()))?;
         let refuse = |what, why| Error::Unsupported { what, with: format!("`{}`", info.name), why };
         if self.map.is_some() && !info.takes_map() {
-            return Err(refuse("map", "it works without coordinates; leave map out"));
+            return Err(refuse("map", "it does not take one; leave map out"));
         }
         if self.q.is_some() && !info.takes_map() {
             return Err(refuse("q", "it has no dexp⁻¹; leave q out"));
@@ -221,7 +221,7 @@ impl FromStr for MethodSpec {
                 let q = q.parse().map_err(|_| Error::OutOfRange {
                     arg: "q".into(),
                     value: q.parse().unwrap_or(f64::NAN),
-                    expected: "a whole number".into(),
+                    expected: "a whole number from 0 on, as in q=2".into(),
                 })?;
                 spec.q = Some(q);
             } else if let Some(tableau) = TABLEAUS.iter().find(|t| same(t.name, word)) {
@@ -319,7 +319,8 @@ pub trait MethodsByName: Ambient {
     where
         Self: Sized + 'p;
 
-    /// The method that `spec` names, with its parts. It is checked to fit the problem; nothing is integrated.
+    /// The method that `spec` names, with its parts. It is checked to fit the type of the problem; nothing is integrated. A map
+    /// that the type of the group has, but not this group, as ccsk on U(n), is refused by the run.
     ///
     /// # Errors
     /// As [`MethodSpec::choose`]; [`Error::Unsupported`] with what the method needs and the problem does not offer,

@@ -45,12 +45,12 @@ impl<G> Power<G> {
         Power { group, copies: 0 }
     }
 
-    /// G.
+    /// The group G of each copy.
     pub fn group(&self) -> &G {
         &self.group
     }
 
-    /// N.
+    /// The number N of copies.
     pub fn copies(&self) -> usize {
         self.copies
     }

@@ -32,7 +32,7 @@ use crate::tolerance::Scales;
 /// The group SE(3). Elements of the algebra are (ω, v), of the group (R, x), of the dual (μ, π).
 ///
 /// ω is an angular velocity and v a linear one. μ is an angular momentum and π a linear one; for a heavy top π is the
-/// direction of gravity. [`LieGroup::apply`] moves a point of ℝ³.
+/// vertical, which points upward. [`LieGroup::apply`] moves a point of ℝ³.
 ///
 /// ```
 /// use lieflow::CoordinateMap;

@@ -11,7 +11,7 @@
 //!
 //! Preserves: energy, |m|, gm and the group to rounding at every order, the Poisson structure, time symmetry. It is the
 //! exact motion with a changed time. Newton's iteration converges for h|m|/min J ≤ 1. Beyond that it may fail for some
-//! m with [`StepError::NewtonDidNotConverge`]. Cost: 3 to 5 Newton iterations of one 3×3 solve each, one cay, and at
+//! m with [`StepError::NewtonDidNotConverge`]. Cost: 3 to 6 Newton iterations of one 3×3 solve each, one cay, and at
 //! most 30 multiplications for σ and δ; no trigonometric function.
 //! Source: J. Moser & A. P. Veselov, Comm. Math. Phys. 139 (1991); R. McLachlan & A. Zanna, Found.
 //! Comput. Math. 5 (2005); E. Hairer & G. Vilmart, J. Phys. A 39 (2006).

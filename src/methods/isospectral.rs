@@ -44,7 +44,7 @@ pub trait ConjugationGroup: LieGroup<Scalar = f64> {
     /// A stage Q_i or P_i, an n×n matrix that need not be in G.
     type Stage: LinearSpace<Scalar = f64> + Send;
 
-    /// n.
+    /// The number n of rows.
     fn rows(&self) -> usize;
     /// Makes new storage.
     fn stage(&self) -> Self::Stage;

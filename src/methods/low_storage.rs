@@ -76,7 +76,7 @@ pub const LS3: TwoN<3> = TwoN {
     embedded: None,
 };
 
-/// Bernardini and Pirozzoli's, order 3, with the smallest error of those with three stages.
+/// Bernardini and Pirozzoli's, order 3, chosen for the propagation of waves.
 pub const LS3_BP: TwoN<3> = TwoN {
     name: "cf-ls3-bp",
     order: 3,

@@ -58,7 +58,7 @@ pub struct OneBracketTableau<const S: usize> {
     pub c: [f64; S],
     /// u_i.
     pub stages: [Increment<S>; S],
-    /// v.
+    /// The increment v of the step.
     pub update: Increment<S>,
     /// The order of another result at t + h, for the error estimate, and the weights of the stages in its two
     /// exponentials; the first is applied first. It may have more stages than the update.

@@ -16,7 +16,7 @@ use crate::error::StepError;
 
 /// A sum F = F₁ + … + F_K in which each F_k has an exact flow.
 pub trait Split: Ambient {
-    /// K.
+    /// The number K of parts.
     const PARTS: usize;
     /// y ← φ_t(y), the exact flow of F_k over the time t; `part` = k − 1 < [`PARTS`](Self::PARTS).
     fn flow(&self, part: usize, t: ScalarOf<Self>, y: &mut PointOf<Self>);

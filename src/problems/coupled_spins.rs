@@ -38,7 +38,7 @@ pub struct Bond<S = f64> {
 pub struct Site<S = f64> {
     /// The diagonal of K: positive for an easy axis.
     pub anisotropy: V<S>,
-    /// B.
+    /// The field B.
     pub field: V<S>,
 }
 
@@ -73,7 +73,7 @@ impl<S: Real> Couplings<S> {
         }
     }
 
-    /// E.
+    /// The energy E.
     pub fn energy(&self, s: &[V<S>]) -> S {
         let zero = S::lit(0.0);
         let of_bond = |Bond { sites: [i, j], exchange, dm }: &Bond<S>| {

@@ -144,7 +144,7 @@ impl<G: Adjoint, H: Hamiltonian<G>> Euler<G, H> {
     pub const fn new(group: G, hamiltonian: H) -> Self {
         Euler { group, hamiltonian }
     }
-    /// H.
+    /// The energy H.
     pub fn hamiltonian(&self) -> &H {
         &self.hamiltonian
     }

@@ -18,9 +18,9 @@ use crate::scalar::Real;
 
 /// A [`Problem`] whose field may fail.
 pub trait TryProblem {
-    /// G.
+    /// The group G.
     type Group: LieGroup;
-    /// Λ.
+    /// The action Λ.
     type Action: Action<Self::Group>;
     /// Scratch of f; `()` when it needs none.
     type Work: Send;

@@ -140,9 +140,9 @@ pub type PointOf<P> = <<P as Problem>::Action as Action<<P as Problem>::Group>>:
 /// }
 /// ```
 pub trait Problem {
-    /// G.
+    /// The group G.
     type Group: LieGroup;
-    /// Λ.
+    /// The action Λ.
     type Action: Action<Self::Group>;
     /// Scratch of f; `()` when it needs none.
     type Work: Send;

@@ -20,7 +20,7 @@ use crate::so3::{add3, apply3};
 /// The motion that a torque may depend on: t, attitude, momentum, angular velocity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyMotion<S = f64> {
-    /// t.
+    /// The time.
     pub t: S,
     /// g, from body to space.
     pub attitude: Matrix3<S>,

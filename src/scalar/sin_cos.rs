@@ -1,6 +1,6 @@
 //! (sin x, cos x) without a branch, so that a loop over many x runs in SIMD lanes.
 //!
-//! x = kπ/2 + r, |r| ≤ π/4: π/2 in three parts of 33, 33 and 53 bits (W. J. Cody, W. Waite), The
+//! x = kπ/2 + r, |r| ≤ π/4: π/2 in three parts of 33, 33 and 53 bits (W. J. Cody, W. Waite). The
 //! products of k with the first two are exact, so r is accurate relative to itself near multiples of π/2.
 //! sin r = r − r³/6 + … and cos r = 1 − r²/2 + … by polynomials in r² that interpolate in Chebyshev
 //! nodes, with relative errors of 1.3e-17 for sin and 5e-19 for cos. The total error is below 1 ε.

@@ -17,7 +17,6 @@ const fn magnus(
     plain(family, name, order, summary, GROUP_AND_TIME, Cost::of(work), source, recipe)
 }
 
-const BLANES: &str = "Blanes, Casas, Ros 2000";
 const ALVERMANN: &str = "Alvermann, Fehske 2011";
 
 /// Methods for equations of linear type, ẏ = λ_*(A(t))(y).
@@ -35,7 +34,7 @@ pub(super) const LINEAR_TYPE: &[MethodInfo] = &[
         6,
         "Magnus, order 6",
         &[times(3, LinearField), times(1, Exp), times(3, Bracket)],
-        BLANES,
+        "Blanes, Casas, Ros 2002",
         Recipe::Magnus6,
     ),
     magnus(
@@ -43,7 +42,7 @@ pub(super) const LINEAR_TYPE: &[MethodInfo] = &[
         8,
         "Magnus, order 8",
         &[times(4, LinearField), times(1, Exp), times(10, Bracket)],
-        BLANES,
+        "Blanes, Casas, Ros 2000",
         Recipe::Magnus8,
     ),
     magnus(

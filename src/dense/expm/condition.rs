@@ -15,7 +15,7 @@ pub enum ApplyChoice {
     Formed(ExpmChoice),
     /// The Taylor series of exp(u/s)·x, s times.
     Series {
-        /// s.
+        /// The number s of parts.
         steps: u32,
         /// The number of products u·x.
         products: u32,

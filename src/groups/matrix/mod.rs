@@ -33,9 +33,9 @@ pub enum Form {
     Symplectic,
     /// Any invertible M.
     Bilinear {
-        /// M.
+        /// The matrix M.
         m: Mat<f64>,
-        /// M⁻¹.
+        /// Its inverse.
         inverse: Mat<f64>,
     },
 }

@@ -57,7 +57,7 @@ impl Unitary {
         }
     }
 
-    /// n.
+    /// The number n of rows.
     pub fn n(&self) -> usize {
         self.n
     }

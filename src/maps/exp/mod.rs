@@ -2,7 +2,7 @@
 //!
 //! | | exp(u) | dexp_u⁻¹ |
 //! |---|---|---|
-//! | any n | Padé, scaling and squaring | Σ B_k/k! ad_u^k (15); beyond its radius the eigen form on so(n) and u(n), halvings of u in Schur coordinates elsewhere |
+//! | any n | Taylor or Padé by cost, scaling and squaring; cos and sin on so(n) | Σ B_k/k! ad_u^k (15); beyond its radius the eigen form on so(n) and u(n), halvings of u in Schur coordinates elsewhere |
 //! | so(3) | 𝟙 + (sin α/α) u + ((1−cos α)/α²) u² (14) | 𝟙 − u/2 + ((1−(α/2)cot(α/2))/α²) u² (16) |
 
 #[cfg(feature = "dense")]
@@ -47,7 +47,7 @@ pub struct TruncatedExp {
 }
 
 impl TruncatedExp {
-    /// q.
+    /// The highest power q of ad_u.
     pub const fn q(self) -> usize {
         self.q
     }

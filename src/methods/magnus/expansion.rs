@@ -1,8 +1,9 @@
 //! The Magnus expansion: Ω by nested brackets of A at Gauss–Legendre nodes.
 //!
 //! Order 4: Ω = h/2 (A₁ + A₂) − h²√3/12 \[A₁, A₂\].
-//! Orders 6 and 8 have the smallest known number of brackets: S. Blanes, F. Casas, J. Ros, Improved high
-//! order integrators based on the Magnus expansion, BIT 40 (2000).
+//! Order 6 has three brackets: S. Blanes, F. Casas, J. Ros, High order optimized geometric integrators for linear
+//! differential equations, BIT 42 (2002). Order 8 has ten: the same authors, Improved high order integrators based on the
+//! Magnus expansion, BIT 40 (2000).
 
 use super::{GAUSS_2, GAUSS_3, GAUSS_4, MagnusWork, ROOT_3, ROOT_15, V, W, magnus_method, sum};
 use crate::error::{Error, StepError};

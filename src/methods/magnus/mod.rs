@@ -6,7 +6,7 @@
 //! | method | order | A | brackets | exp | source |
 //! |---|---|---|---|---|---|
 //! | [`Magnus4`] | 4 | 2 | 1 | 1 | Iserles, Nørsett 1999 |
-//! | [`Magnus6`] | 6 | 3 | 3 | 1 | Blanes, Casas, Ros 2000 |
+//! | [`Magnus6`] | 6 | 3 | 3 | 1 | Blanes, Casas, Ros 2002 |
 //! | [`Magnus8`] | 8 | 4 | 10 | 1 | the same |
 //! | [`CFM4_2`], [`CFM4_3`] | 4 | 2, 3 | 0 | 2, 3 | Blanes, Moan 2006; Alvermann, Fehske 2011 |
 //! | [`CFM6_5`] | 6 | 3 | 0 | 5 | Alvermann, Fehske 2011 |

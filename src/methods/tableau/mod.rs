@@ -23,7 +23,7 @@ use crate::scalar::Real;
 pub struct Tableau<const S: usize> {
     /// The name in scene files.
     pub name: &'static str,
-    /// The classical order. Steps by error are chosen by it, and Munthe-Kaas methods cut dexp⁻¹ there.
+    /// The classical order. Steps by error are chosen by it.
     pub order: usize,
     /// Stage weights a_ij.
     pub a: [[f64; S]; S],

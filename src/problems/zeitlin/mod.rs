@@ -39,7 +39,7 @@ use crate::space::Metric;
 
 /// A quantised surface for Zeitlin's model.
 pub trait Surface {
-    /// N.
+    /// The size N of the matrices.
     fn n(&self) -> usize;
     /// 1/ħ, the rate of Ẇ = \[P, W\]/ħ.
     fn rate(&self) -> f64;
@@ -101,7 +101,7 @@ impl<S: Surface> Zeitlin<S> {
     pub fn new(surface: S) -> Result<Self, Error> {
         Ok(Zeitlin { group: Unitary::new(surface.n())?, surface })
     }
-    /// N.
+    /// The size N of the matrices.
     pub fn n(&self) -> usize {
         self.surface.n()
     }
