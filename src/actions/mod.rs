@@ -42,12 +42,18 @@ pub trait Action<G: LieGroup>: Send + Sync {
     /// Makes the scratch for [`act`](Self::act). Only this call allocates.
     fn work(&self, group: &G) -> Self::Work;
 
-    /// Checks before a run that p has the size that `group` acts on, and finite numbers.
+    /// Checks before a run that p has the size that `group` acts on, and finite numbers. By default that the square of its size
+    /// is finite.
     ///
     /// # Errors
     /// [`Error::Shape`] with both sizes, [`Error::NotFiniteEntry`].
-    fn check(&self, _group: &G, _p: &Self::Point) -> Result<(), Error> {
-        Ok(())
+    #[inline]
+    fn check(&self, _group: &G, p: &Self::Point) -> Result<(), Error> {
+        let size = p.size();
+        match (size * size).is_finite() {
+            true => Ok(()),
+            false => Err(Error::out_of_range("‖y‖²", f64::NAN, "a finite number")),
+        }
     }
 
     /// Checks, at the start of a run, what [`restore`](Self::restore) does not see ([`LieGroup::check_member`]).

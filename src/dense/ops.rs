@@ -79,6 +79,11 @@ impl<const K: usize, const M: usize> NullaryFnOnce for Sums<'_, K, M> {
     fn call(self) {
         let Sums { mut out, c, x, d, add } = self;
         let (rows, columns) = x.first().map_or((0, 0), |x| (x.nrows(), x.ncols()));
+        let is_like = |m: &Mat<f64>| (m.nrows(), m.ncols()) == (rows, columns);
+        if !(x.iter().all(|x| is_like(x)) && out.iter().all(|out| is_like(out))) {
+            // A matrix of another size comes from a function of the caller: no number of it is used.
+            return out.iter_mut().for_each(|out| out.fill(f64::NAN));
+        }
         let whole = rows - rows % CHUNK;
         for j in 0..columns {
             let mut cols: [&[f64]; K] = [&[]; K];

@@ -35,6 +35,10 @@ pub(crate) fn mul_add(out: &mut Mat<f64>, alpha: f64, a: MatRef<'_, f64>, b: Mat
 
 fn product(out: &mut Mat<f64>, a: MatRef<'_, f64>, b: MatRef<'_, f64>, alpha: f64, accum: Accum) {
     let n = a.nrows();
+    if a.ncols() != b.nrows() || (out.nrows(), out.ncols()) != (n, b.ncols()) {
+        // A matrix of another size comes from a function of the caller: no number of it is used.
+        return out.fill(f64::NAN);
+    }
     let square = a.ncols() == n && b.nrows() == n && b.ncols() == n;
     let add = matches!(accum, Accum::Add);
     tally_product(n * b.ncols(), a.ncols(), alpha, add);

@@ -6,7 +6,7 @@
 //!
 //! Order 2, symmetric; a [`Composition`](super::Composition) raises the order. Preserves: every Casimir, because it
 //! acts by the group, and the energy, because Ψ(hξ) leaves ξ fixed: H(m⁺) − H(m) = ⟨m⁺ − m, ξ⟩ = ⟨m, Ad_Ψ ξ − ξ⟩ = 0.
-//! Both hold to the rounding of the iteration. It is not symplectic in general. The fixed-point iteration for ξ
+//! Both hold to rounding: the iteration goes on until its changes no longer shrink. It is not symplectic in general. The fixed-point iteration for ξ
 //! converges while h‖J⁻¹‖|m| is below about 1. Beyond that the step fails with [`StepError::FixedPointDidNotConverge`].
 //!
 //! It takes every problem that is [`LiePoisson`]: the body in ℝ³ and ℝⁿ, and Euler's equations
@@ -99,7 +99,7 @@ impl<P: LiePoisson, Psi: CoordinateMap<P::Group> + OddMap> Method<P> for EnergyC
         if !alg.is_finite(xi) {
             return Err(StepError::NonFiniteRhs { stage: 1 });
         }
-        let mut progress = Progress::new(iterations);
+        let mut progress = Progress::to_the_last_digit(iterations);
         loop {
             alg.set_zero(u);
             alg.axpy(-h, xi, u);

@@ -75,6 +75,8 @@ pub(super) struct Progress<'a, S> {
     last: S,
     last_of_parts: S,
     iterations: u32,
+    /// A smaller change is rounding.
+    tiny: f64,
     total: &'a mut u64,
 }
 
@@ -82,8 +84,15 @@ impl<'a, S: Real> Progress<'a, S> {
     /// Begins an iteration. Its iterations are added to `total`.
     #[inline]
     pub(super) fn new(total: &'a mut u64) -> Self {
-        let none = S::lit(f64::INFINITY);
-        Progress { last: none, last_of_parts: none, iterations: 0, total }
+        let (none, tiny) = (S::lit(f64::INFINITY), 0.25 * S::EPSILON);
+        Progress { last: none, last_of_parts: none, iterations: 0, tiny, total }
+    }
+
+    /// Begins an iteration that goes on until its changes no longer shrink. What is left of a slow one has the same sign from
+    /// step to step, and an invariant drifts by it. Source: E. Hairer, R. McLachlan, A. Razakarivony, BIT 48 (2008).
+    #[inline]
+    pub(super) fn to_the_last_digit(total: &'a mut u64) -> Self {
+        Progress { tiny: f64::MIN_POSITIVE, ..Self::new(total) }
     }
 
     /// True if the iteration is done after a change of this size, relative to the size of the solution.
@@ -95,9 +104,8 @@ impl<'a, S: Real> Progress<'a, S> {
     pub(super) fn done(&mut self, method: &'static str, change: S) -> Result<bool, StepError> {
         self.iterations += 1;
         *self.total += 1;
-        let tiny = 0.25 * S::EPSILON;
         let stalled = change.all_below(STALL * S::EPSILON) && !(change / self.last).all_below(0.9);
-        if change.all_below(tiny) || stalled {
+        if change.all_below(self.tiny) || stalled {
             return Ok(true);
         }
         if !change.is_finite() || self.iterations >= FIXED_POINT_MAX {

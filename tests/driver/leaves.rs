@@ -5,11 +5,11 @@ use lieflow::faer::{Mat, c64};
 use lieflow::groups::{
     AlgebraMatrix, ComplexMatrix, MatrixGroup, Power, Product, Sample, So3, Unitary,
 };
-use lieflow::maps::Exp;
+use lieflow::maps::{Cay, Exp};
 use lieflow::methods::tableau::{DOPRI5, RK4};
-use lieflow::methods::{Embedded, Rk, Rkmk};
-use lieflow::problems::{Flow, PointOf, Problem};
-use lieflow::{Error, LieAlgebra, LieGroup, RunError, Solve};
+use lieflow::methods::{Embedded, EnergyCasimir, Rk, Rkmk};
+use lieflow::problems::{Euler, Flow, Kinetic, Lyapunov, PointOf, Problem};
+use lieflow::{Action, Error, Event, LieAlgebra, LieGroup, RunError, Solve};
 use nalgebra::{Matrix3, Vector3};
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
@@ -349,4 +349,92 @@ fn a_value_of_another_size_ends_a_run() {
     });
     let run = Solve::new(&flow, &method, [0.0, 1.0]).steps(10).run(u3.identity());
     ends(run.map(drop).map_err(|failed| failed.error));
+}
+
+/// A gradient of another size than the algebra, and derivatives of another size: no number of them is used.
+#[test]
+fn gradients_of_another_size_end_a_run() {
+    for n in [3, 4, 5] {
+        let gradient = move |m: &Mat<f64>, xi: &mut AlgebraMatrix| {
+            *xi = AlgebraMatrix::new_unchecked(Mat::from_fn(n, n, |i, j| match (i, j) {
+                (0, 1) => m[(0, 1)],
+                (1, 0) => -m[(0, 1)],
+                _ => 0.0,
+            }));
+        };
+        let euler = Euler::new(MatrixGroup::so(4).expect("SO(4)"), Kinetic(gradient));
+        let start = Mat::from_fn(4, 4, |i, j| i as f64 - j as f64);
+        macro_rules! check {
+            ($($method:expr),*) => {$({
+                let method = $method;
+                let run = Solve::new(&euler, &method, [0.0, 0.1]).dt(0.05).run(start.clone());
+                assert_eq!(run.is_ok(), n == 4, "{n}");
+            })*};
+        }
+        check![Rkmk::new(RK4, Exp), Rkmk::new(DOPRI5, Exp), EnergyCasimir::new(Cay)];
+    }
+    for wrong in [1, 3] {
+        let field = move |t: f64, _: &Mat<f64>, dx: &mut Mat<f64>, df: &mut Mat<f64>| {
+            dx.fill(1.0);
+            df.fill(0.0);
+            if t > 0.5 {
+                *dx = Mat::from_fn(wrong, 1, |_, _| 1.0);
+                *df = Mat::zeros(wrong, wrong);
+            }
+        };
+        let growth = Lyapunov::new(2, field).expect("two numbers");
+        let start = growth.state(&[1.0, 1.0]).expect("a start");
+        let method = Rkmk::new(RK4, Exp);
+        let run = Solve::new(&growth, &method, [0.0, 1.0]).dt(0.1).run(start);
+        run.expect_err("numbers of another size");
+    }
+}
+
+/// An action of a user that checks nothing, on points of the library.
+#[derive(Clone, Copy)]
+struct Unchecked;
+
+impl Action<So3<f64>> for Unchecked {
+    type Point = Vector3<f64>;
+    type Work = ();
+
+    fn work(&self, _: &So3<f64>) {}
+    fn act(
+        &self,
+        _: &So3<f64>,
+        g: &Matrix3<f64>,
+        y: &Vector3<f64>,
+        z: &mut Vector3<f64>,
+        (): &mut (),
+    ) {
+        *z = g * y;
+    }
+    fn generate(
+        &self,
+        _: &So3<f64>,
+        v: &Vector3<f64>,
+        y: &Vector3<f64>,
+        w: &mut Vector3<f64>,
+        (): &mut (),
+    ) {
+        *w = v.cross(y);
+    }
+}
+
+#[test]
+fn own_actions_end_at_numbers_that_are_not_finite() {
+    let turn = Flow::new(
+        So3::<f64>::new(),
+        Unchecked,
+        |t: f64, _: &Vector3<f64>, v: &mut Vector3<f64>| {
+            *v = Vector3::new(0.0, 0.0, 1.0 + t);
+        },
+    );
+    let method = Rkmk::new(RK4, Exp);
+    let solve = || Solve::new(&turn, &method, [0.0, 1.0]).dt(0.1);
+    solve().run(Vector3::x()).expect("a run");
+    solve().run(Vector3::new(f64::NAN, 0.0, 0.0)).expect_err("no start");
+    let event = Event::new("lost", |t, _| t - 0.5).change(|_, y: &mut Vector3<f64>| y.x = f64::NAN);
+    let told = solve().event(event).run(Vector3::x()).expect_err("no state").to_string();
+    assert!(told.contains("lost"), "{told}");
 }

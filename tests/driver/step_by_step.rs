@@ -286,16 +286,16 @@ fn points_of_other_sizes_are_refused() {
         observed(Next::Changed).expect_err("another size");
         assert_eq!(observed(Next::Continue).expect("a run").y, start);
     }
+    type Vectors = Box<[Vector3<f64>]>;
     let copies = Power::new(So3::<f64>::new(), 3).expect("copies");
-    let still =
-        Flow::new(copies, Linear, |_, _: &Box<[Vector3<f64>]>, _: &mut Box<[Vector3<f64>]>| {});
+    let still = Flow::new(copies, Linear, |_, _: &Vectors, _: &mut Vectors| {});
     let method = Rkmk::new(RK4, Exp);
-    let start: Box<[Vector3<f64>]> = vec![Vector3::x(); 3].into();
+    let start: Vectors = vec![Vector3::x(); 3].into();
     let solve = Solve::new(&still, &method, [0.0, 1.0]).dt(0.5);
     let mut run = solve.integrator(start).expect("a start");
     run.step().expect("a step");
     for n in [0, 2, 5] {
-        let mut other: Box<[Vector3<f64>]> = vec![Vector3::zeros(); n].into();
+        let mut other: Vectors = vec![Vector3::zeros(); n].into();
         for t in [0.2, 0.5] {
             run.interpolate(t, &mut other).expect_err("another size");
         }

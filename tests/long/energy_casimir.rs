@@ -9,7 +9,7 @@ use lieflow::methods::{
 };
 use lieflow::problems::{
     Ambient, DiscreteGradient, Euler, Hamiltonian, HeavyTop, Kinetic, LiePoisson, MeanGradient,
-    PointOf, Problem, SphericalPendulum, SpinChain,
+    PointOf, Problem, RigidBody, SphericalPendulum, SpinChain,
 };
 use lieflow::{
     Action, CoordinateMap, LieAlgebra, Method, SaveAt, Step, StepError, TimeGrid, integrate,
@@ -265,4 +265,29 @@ fn the_mean_of_gradients_on_the_way_is_a_discrete_gradient() {
     };
     let problem = Euler::new(Se3::<f64>::new(), MeanGradient(energy, along));
     check("an unusual top", &problem, (V::new(0.2, 0.5, 0.3), V::new(0.6, 0.0, 0.8)));
+}
+
+/// What is left of an iteration has the same sign in each step: the energy would drift in a straight line, by 1e-11. Rounding of
+/// steps grows with the root of their number.
+#[test]
+fn the_energy_does_not_drift_in_a_line() {
+    let body = RigidBody::<f64>::new([1.0, 2.0, 3.0]).expect("a body");
+    for (start, h) in [(V::new(0.2, 0.0, 3.0), 0.1), (V::new(1.0, 0.5, 0.7), 0.02)] {
+        let (steps, base) = (500_000, EnergyCasimir::new(Cay));
+        let energy = body.energy(&start);
+        let mut drifts = Vec::new();
+        let mut y = start;
+        for _ in 0..4 {
+            y = run(
+                &body,
+                &base,
+                &y,
+                h * f64::from(steps / 4),
+                u64::from(steps as u32 / 4),
+                |_| {},
+            );
+            drifts.push(body.energy(&y) / energy - 1.0);
+        }
+        assert!(drifts.iter().all(|drift| drift.abs() < 3e-13), "{start:?}, {h}: {drifts:?}");
+    }
 }
