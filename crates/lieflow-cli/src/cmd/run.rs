@@ -248,7 +248,7 @@ pub fn run_scene(
     if let (true, Some(failure), Some([_, (_, row)])) =
         (done.attempts_used_up, &mut done.failure, kept.rows.ends())
     {
-        *failure += &larger_atol(scene, largest(row.values())).unwrap_or_default();
+        *failure += &larger_atol(scene, watch.largest(row)).unwrap_or_default();
     }
     done.failure = kept.overflow.take().or(done.failure);
     let completed = done.failure.is_none();
@@ -306,7 +306,7 @@ pub fn run_scene(
     let (accuracy, accuracy_unknown) = match checked {
         Ok(Some(checked)) => {
             let error = checked.accuracy.relative();
-            let numbers = rows.ends().map_or(0.0, |[(_, row), _]| largest(row.values()));
+            let numbers = rows.ends().map_or(0.0, |[(_, row), _]| watch.largest(row));
             let gaps: BTreeMap<&String, f64> = watch.law_columns().zip(checked.laws).collect();
             let is_moving = |(name, drift): &(&String, &Drift)| {
                 let gap = gaps.get(name).copied().unwrap_or(0.0);
@@ -470,11 +470,6 @@ fn one_long_step(scene: &Scene) -> Option<String> {
             output::number(length)
         )
     })
-}
-
-/// The largest size of a number; 0 if there is none.
-fn largest(numbers: &[f64]) -> f64 {
-    numbers.iter().fold(0.0, |most, x| most.max(x.abs()))
 }
 
 /// What to set where atol was chosen by a start that is small beside what the numbers became: their rounding is more.

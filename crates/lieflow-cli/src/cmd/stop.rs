@@ -23,6 +23,9 @@ pub(super) fn listen() -> Result<Arc<AtomicBool>, CliError> {
             .and_then(|_| flag::register(signal, Arc::clone(&stop)))
             .map_err(CliError::Signals)?;
     }
+    // A file that becomes larger than the limit of the shell is a failed write then, and not the end of the program.
+    #[cfg(unix)]
+    flag::register(signal_hook::consts::SIGXFSZ, Arc::default()).map_err(CliError::Signals)?;
     Ok(stop)
 }
 

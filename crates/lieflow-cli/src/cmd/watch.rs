@@ -125,6 +125,12 @@ impl<'a> Watch<'a> {
         Ok(drifts.map(|((name, promised), w)| (name, w.drift(promised, steps))).collect())
     }
 
+    /// The largest number of the state and of the laws in a row.
+    pub(super) fn largest(&self, row: Row<'_>) -> f64 {
+        let numbers = self.state.iter().chain(&self.laws).flat_map(|part| &row[*part]);
+        numbers.fold(0.0, |most, x| most.max(x.abs()))
+    }
+
     /// Run the scene by this plan. A step that fails is an end, not an error.
     pub(super) fn run(&self, plan: Plan<'_>, watcher: &mut dyn Watcher) -> Result<Done, CliError> {
         let scene = self.scene;

@@ -20,7 +20,7 @@ use lieflow_model::schema::{Component, Observable, Row};
 
 use self::advice::POOR;
 use self::sizes::size;
-use self::unseen::LAST_DIGITS;
+use self::unseen::{LAST_DIGITS, with_rounding};
 use super::apart::{
     Apart, Beside, ColumnApart, Gap, Largest, Limits, Size, ZerosApart, derived_of, norm, parts_of,
 };
@@ -210,6 +210,9 @@ impl<'a> Check<'a> {
                 self.by_another(OWN, self.own, |way| self.beside(way, &times))?
             }
         };
+        let moved = self.moved_by_last_digits(seconds);
+        let share =
+            with_rounding((found_by, share), &apart, moved.as_ref().map(Accuracy::relative));
         let zeros = self.scene().events.iter().zip(&apart.events);
         let other_zeros = zeros.map(|(event, zeros)| {
             if zeros.agree() {
@@ -252,7 +255,6 @@ impl<'a> Check<'a> {
             let rounding = f64::EPSILON * self.run.t_span[0].abs().max(self.run.t_span[1].abs());
             (!are_wrong(zeros)).then(|| (zeros.distance * share).max(rounding))
         };
-        let moved = self.moved_by_last_digits(seconds);
         self.moved.set(moved.as_ref().map_or(0.0, |moved| self.by_rounding(moved.relative())));
         let (mut accuracy, mut warnings) =
             (self.judge((found_by, share), &apart, self.moved.get(), clock), Vec::new());
@@ -552,10 +554,12 @@ impl<'a> Check<'a> {
         // What rounding does to it, as `moved` of the run.
         let changed =
             || self.rows_from(Some(self.changed_start(way, LAST_DIGITS)?), way, times).ok();
+        let mut end_moved = None;
         let moved = match self.is_exact {
             true => 0.0,
             false => changed().map_or(self.moved.get(), |(others, _)| {
                 let moved = self.judge((FoundBy::Exact, 1.0), &apart(&others), 0.0, clock);
+                end_moved = Some(moved.relative());
                 self.by_rounding(moved.relative())
             }),
         };
@@ -567,6 +571,7 @@ impl<'a> Check<'a> {
                 self.by_another(way, taken, other).ok()?
             }
         };
+        let share = with_rounding((found_by, share), &apart, end_moved);
         let accuracy = self.judge((found_by, share), &apart, moved, clock);
         // Two runs may have the same rounding.
         Some((moved.max(accuracy.relative()) <= POOR).then_some(accuracy))

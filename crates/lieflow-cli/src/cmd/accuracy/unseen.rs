@@ -28,6 +28,22 @@ const OF_CHANGE: f64 = 1.0 / 16.0;
 /// A motion that makes this of it is worth a warning, where the error of the method is smaller.
 const GROWN: f64 = 1e-6;
 
+/// The share of a distance that is the error. Where rounding decides it, a run at a larger tolerance is no worse, and the whole
+/// distance is the error: where the last digits of the start move the end by more than the distance.
+pub(super) fn with_rounding(
+    (found_by, share): (FoundBy, f64),
+    apart: &Apart,
+    moved: Option<f64>,
+) -> f64 {
+    let distance = apart.parts.iter().map(|part| part.last.relative).fold(0.0, f64::max);
+    match (found_by, moved) {
+        (FoundBy::TenfoldTolerance, Some(moved)) if distance > 0.0 => {
+            (0.5 * moved / distance).min(1.0).max(share)
+        }
+        _ => share,
+    }
+}
+
 impl Check<'_> {
     /// The size of short steps.
     pub(super) fn short_step(&self) -> f64 {
