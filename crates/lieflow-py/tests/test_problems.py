@@ -502,3 +502,38 @@ def test_parts_in_another_order_are_others():
     assert lf.solve_ivp(lf.Composed(parts=[a, b]), (1, 2), end).success
     with pytest.raises(lf.ArgumentError, match="other parts"):
         lf.solve_ivp(lf.Composed(parts=[b, a]), (1, 2), end)
+
+
+def test_a_quaternion_alone_is_a_state_of_its_keys():
+    body = lf.RigidBody(inertia=[1, 2, 3], omega_body=[0.3, 1, 0.2], quaternion=[1, 0, 0, 0])
+    end = lf.solve_ivp(body, (0, 1)).y_end
+    same = lf.RigidBody(inertia=np.array([1.0, 2, 3]), omega_body=[0.3, 1.0, 0.2], quaternion=[1, 0, 0, 0])
+    assert lf.solve_ivp(same, (1, 2), end).success
+    for other in (body.replace(omega_body=[3, 0, 0]), body.replace(inertia=[2, 2.5, 3])):
+        with pytest.raises(lf.ArgumentError, match="an attitude alone"):
+            lf.solve_ivp(other, (1, 2), end)
+
+
+def test_other_samples_have_their_interpolation():
+    t = np.linspace(0, 4, 9)
+    keys = {"inertia": [1, 2, 3], "omega_body": [0.3, 1, 0.2], "torque": ["u", 0, 0]}
+    cubic = lf.Samples(t, np.sin(t), "cubic", names=["u"])
+    linear = lf.Samples(t, np.cos(3 * t), "linear", names=["u"])
+    replaced, fresh = lf.DrivenBody(samples=cubic, **keys).replace(samples=linear), lf.DrivenBody(samples=linear, **keys)
+    assert replaced == fresh and replaced.keys["interpolation"] == "linear"
+    assert lf.DrivenBody(samples=cubic, **keys).replace(samples=None, torque=None).keys.keys() == {"inertia", "omega_body"}
+
+
+def test_equal_problems_are_one():
+    one, other = lf.RigidBody(inertia=[1, 2, 3], omega_body=[0.3, 1, 0]), lf.RigidBody(inertia=np.array([1.0, 2, 3]), omega_body=[np.float64(0.3), 1, 0])
+    assert one == other and len({one, other}) == 1
+    assert eval(repr(other), {"lieflow": lf}) == other and "np" not in repr(other)
+
+
+def test_an_integrator_refuses_what_a_run_refuses():
+    body = lf.RigidBody(inertia=[1, 2, 3], omega_body=[0.3, 1, 0])
+    for name, value in (("group", "SE(3)"), ("frame", "body"), ("action", "linear"), ("linear", True), ("args", (1,))):
+        with pytest.raises(lf.ArgumentError, match=name):
+            lf.Integrator(body, None, (0, 10), **{name: value})
+    with pytest.raises(lf.ArgumentError, match=r"stops\[0\]"):
+        lf.Integrator(body, None, (0, 10), stops=[500.0])

@@ -200,6 +200,10 @@ TAKEN = frozenset(
 )
 
 
+#: What y has, a dict.
+NOT_PARTS = frozenset("items values get copy pop popitem update clear setdefault fromkeys".split())
+
+
 class Parts:
     """A system of rotations, vectors and numbers, as the ``group`` of a run. Then y is a dict of arrays.
 
@@ -223,7 +227,7 @@ class Parts:
         self.spaces = spaces
         sizes: dict[str, tuple[int, int, tuple[int, ...]]] = {}
         for name, space in spaces.items():
-            if name in TAKEN:
+            if name in TAKEN or name in NOT_PARTS or name.startswith("_"):
                 raise ArgumentError("spaces", repr(name), "another name: a result of a run has this one")
             if not isinstance(space, str):
                 raise TypeError(f"{name}: a value of type {type(space).__name__}, expected the name of a space")

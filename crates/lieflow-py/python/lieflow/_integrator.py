@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from ._arrays import number, real
 from ._errors import ArgumentError
 from ._fields import Parts
-from ._ivp import METHOD, Ready, settings_of, span_of
+from ._ivp import METHOD, Ready, check_of_problem, check_stops, settings_of, span_of
 from ._problems import Problem
 from ._unitary import ComplexPoints, Unitary
 
@@ -75,7 +75,11 @@ class Integrator:
         span, settings = span_of(t_span), settings_of(**steps, linear=linear)
         self._split: Any = None
         self._join: Parts | ComplexPoints | None = None
+        check_stops(settings, span)
         if isinstance(problem, Problem):
+            check_of_problem(group, frame, action, linear)
+            if args:
+                raise ArgumentError("args", repr(args), "none: a problem takes no arguments")
             asked = problem.asked(quantities)
             model = problem._model(asked)
             method = method or problem.method

@@ -437,16 +437,9 @@ def solve_ivp(
         rtol, atol, first_step, min_step, max_step, max_steps, dt, steps, stops, dense_output, linear
     )
     times = times_of(t_eval, span)
-    low, high = min(span), max(span)
-    for i, stop in enumerate(settings["stops"]):
-        if not low <= stop <= high:
-            raise ArgumentError(f"stops[{i}]", repr(stop), f"a time within [{low}, {high}]")
+    check_stops(settings, span)
     if isinstance(fun, Problem):
-        for name, value, default in (("group", group, None), ("frame", frame, None), ("action", action, "translation")):
-            if value != default:
-                raise ArgumentError(name, repr(value), "none: a problem has its own")
-        if linear:
-            raise ArgumentError("linear", repr(linear), "none: a problem knows whether it is linear")
+        check_of_problem(group, frame, action, linear)
         if args and not any(callable(event.g) or event.change for event in planned):
             raise ArgumentError("args", repr(args), "none: a problem takes no arguments, and no event is a function")
         return _of_problem(fun, span, y0, method, settings, times, planned, quantities, callback, args)
@@ -520,6 +513,23 @@ def _beyond(first: Result, span: tuple[float, float], events: list[Event]) -> tu
     end = first.t_end + (first.largest_step if span[1] > span[0] else -first.largest_step)
     on = [Event(event.g, 0, event.direction, event.change, event.points, event.name) for event in events]
     return min(max(end, low), high), on
+
+
+def check_stops(settings: dict[str, Any], span: tuple[float, float]) -> None:
+    """Raise ArgumentError for a stop outside of the span."""
+    low, high = min(span), max(span)
+    for i, stop in enumerate(settings["stops"]):
+        if not low <= stop <= high:
+            raise ArgumentError(f"stops[{i}]", repr(stop), f"a time within [{low}, {high}]")
+
+
+def check_of_problem(group: Any, frame: Any, action: str, linear: bool) -> None:
+    """Raise ArgumentError for an argument of a field beside a problem."""
+    for name, value, default in (("group", group, None), ("frame", frame, None), ("action", action, "translation")):
+        if value != default:
+            raise ArgumentError(name, repr(value), "none: a problem has its own")
+    if linear:
+        raise ArgumentError("linear", repr(linear), "none: a problem knows whether it is linear")
 
 
 def _second(

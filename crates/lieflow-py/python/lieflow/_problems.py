@@ -18,7 +18,7 @@ from ._errors import ArgumentError
 from ._fields import Quantities, Samples, State
 from ._result import Layout
 from ._unitary import ComplexState, complex_numbers
-from ._values import is_complex, part, plain
+from ._values import alike, is_complex, part, plain
 
 Array = NDArray[np.float64]
 #: Numbers may be formulas of the parameters, as in ``["5*deg", 0, "w"]``.
@@ -95,6 +95,9 @@ class Problem:
         # Another value is both parts of it.
         for name in [name for name in keys if f"{name}_imaginary" in self._keys]:
             keys.setdefault(f"{name}_imaginary", None)
+        # Other samples have their own interpolation.
+        if "samples" in keys:
+            keys.setdefault("interpolation", None)
         changed = _quietly(type(self).kind, {**self._keys, **keys})
         changed._warn(3)
         return changed
@@ -194,11 +197,12 @@ class Problem:
     def _form_of(self, form: str) -> tuple[str, str, str]:
         """What the numbers of a state of this form of the model are of."""
         # The attitude of a free body is a state alone: the keys have its momentum.
-        if type(self).kind == "rigid-body" and form.endswith("RigidBodyAttitude"):
-            return type(self).kind, form, repr(sorted(self._keys.items()))
+        if type(self).kind == "rigid-body" and form.endswith(("RigidBodyAttitude", "RigidBodyQuaternion")):
+            return type(self).kind, form, alike(self._keys)
         if type(self).kind == "composed":
             return type(self).kind, form, repr([(part.get("name"), part.get("space")) for part in self._keys["parts"]])
-        return type(self).kind, form, ""
+        # What stands beside the state.
+        return type(self).kind, form, alike({name: self._keys.get(name) for name in ("surface", "particle", "algebra")})
 
     def _start(self, y0: Any, model: Any, method: str) -> Array | None:
         """The numbers of another state: the end of a run, these numbers, or a complex array."""
@@ -210,9 +214,12 @@ class Problem:
                 expected = "that of a run with the same keys; replace(momentum_body=..., attitude=...) begins with its last row"
                 raise ArgumentError("y0", "an attitude alone, whose momentum the keys of the other problem say", expected)
             if y0._of[:2] == form[:2] and y0._of != form:
-                raise ArgumentError("y0", "the end of a run of other parts", "the same parts in the same order")
+                if form[0] == "composed":
+                    raise ArgumentError("y0", "the end of a run of other parts", "the same parts in the same order")
+                expected = "the same surface, particle and algebra"
+                raise ArgumentError("y0", f"the end of a run of another {type(self).__name__}", expected)
             if y0._of != form:
-                expected = f"the end of a run of {type(self).kind!r} with the same quantities"
+                expected = f"the end of a run of {type(self).kind!r} with the same quantities, by a method on the same state"
                 raise ArgumentError("y0", f"the end of another run, of {y0._of[0]!r}", expected)
             return y0._numbers
         if isinstance(y0, dict):
@@ -243,7 +250,7 @@ class Problem:
         return type(self) is type(other) and isinstance(other, Problem) and self._keys == other._keys
 
     def __hash__(self) -> int:
-        return hash((type(self).__name__, repr(sorted(self._keys.items()))))
+        return hash((type(self).__name__, alike(self._keys)))
 
     def __reduce__(self) -> tuple[Any, ...]:
         return (_quietly, (type(self).kind, self._keys))

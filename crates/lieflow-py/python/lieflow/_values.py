@@ -9,7 +9,7 @@ import numpy as np
 
 from ._fields import Samples
 
-__all__ = ["is_complex", "part", "plain"]
+__all__ = ["alike", "is_complex", "part", "plain"]
 
 
 def is_complex(x: Any) -> bool:
@@ -28,10 +28,21 @@ def part(x: Any, name: str) -> Any:
     return getattr(x, name)
 
 
+def alike(x: Any) -> str:
+    """Return a text that is the same for equal values: 1 and 1.0 are equal."""
+    if isinstance(x, int) and not isinstance(x, bool):
+        return repr(float(x))
+    if isinstance(x, dict):
+        return f"{{{', '.join(f'{key}: {alike(x[key])}' for key in sorted(x))}}}"
+    return f"[{', '.join(map(alike, x))}]" if isinstance(x, list) else repr(x)
+
+
 def plain(name: str, x: Any) -> Any:
     """Return x as numbers, texts, lists and dicts. Raise TypeError for what is none of them."""
-    if x is None or isinstance(x, (str, bool, int, float)):
+    if x is None or type(x) in (str, bool, int, float):
         return x
+    if isinstance(x, (str, float, int)):  # of NumPy, or an enumeration
+        return next(kind(x) for kind in (str, float, int) if isinstance(x, kind))
     if isinstance(x, Samples):
         return list(x.as_file())
     if isinstance(x, np.ndarray) or isinstance(x, np.generic):
