@@ -42,8 +42,8 @@ pub trait Action<G: LieGroup>: Send + Sync {
     /// Makes the scratch for [`act`](Self::act). Only this call allocates.
     fn work(&self, group: &G) -> Self::Work;
 
-    /// Checks before a run that p has the size that `group` acts on, and finite numbers. By default that the square of its size
-    /// is finite.
+    /// Checks before a run that p has the size that `group` acts on, and finite numbers. The default checks that ‖p‖² is
+    /// finite, so ‖p‖ has to be below 1e154.
     ///
     /// # Errors
     /// [`Error::Shape`] with both sizes, [`Error::NotFiniteEntry`].
@@ -52,7 +52,7 @@ pub trait Action<G: LieGroup>: Send + Sync {
         let size = p.size();
         match (size * size).is_finite() {
             true => Ok(()),
-            false => Err(Error::out_of_range("‖y‖²", f64::NAN, "a finite number")),
+            false => Err(Error::out_of_range("y", f64::NAN, "finite numbers, and ‖y‖ below 1e154")),
         }
     }
 

@@ -39,7 +39,7 @@ fn product(out: &mut Mat<f64>, a: MatRef<'_, f64>, b: MatRef<'_, f64>, alpha: f6
         // A matrix of another size comes from a function of the caller: no number of it is used.
         return out.fill(f64::NAN);
     }
-    let square = a.ncols() == n && b.nrows() == n && b.ncols() == n;
+    let square = a.ncols() == n && b.ncols() == n;
     let add = matches!(accum, Accum::Add);
     tally_product(n * b.ncols(), a.ncols(), alpha, add);
     match n {

@@ -6,8 +6,8 @@
 //!
 //! Order 2, symmetric; a [`Composition`](super::Composition) raises the order. Preserves: every Casimir, because it
 //! acts by the group, and the energy, because Ψ(hξ) leaves ξ fixed: H(m⁺) − H(m) = ⟨m⁺ − m, ξ⟩ = ⟨m, Ad_Ψ ξ − ξ⟩ = 0.
-//! Both hold to rounding: the iteration goes on until its changes no longer shrink. It is not symplectic in general. The fixed-point iteration for ξ
-//! converges while h‖J⁻¹‖|m| is below about 1. Beyond that the step fails with [`StepError::FixedPointDidNotConverge`].
+//! Both hold to rounding: the iteration goes on until its changes no longer shrink. It is not symplectic in general.
+//! The fixed-point iteration for ξ converges while h‖J⁻¹‖|m| is below about 1. Beyond that the step fails with [`StepError::FixedPointDidNotConverge`].
 //!
 //! It takes every problem that is [`LiePoisson`]: the body in ℝ³ and ℝⁿ, and Euler's equations
 //! ([`Euler`](crate::problems::Euler)) on any algebra. H is quadratic, or any function with a

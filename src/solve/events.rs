@@ -153,8 +153,7 @@ impl<'a, Y> Event<'a, Y> {
     /// the values of g at the start and at the end of the step.
     ///
     /// Example: g > 0 is a rate that the state knows, and the number of points is chosen so that h · g / points
-    /// stays below a bound. Such
-    /// an event has no zeros; it sees the state often enough.
+    /// stays below a bound. Such an event has no zeros; it sees the state often enough.
     pub fn points_by(mut self, points: fn(f64, [f64; 2]) -> u32) -> Self {
         self.rule.points = Points::By(points);
         self

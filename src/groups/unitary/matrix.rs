@@ -196,8 +196,8 @@ impl Metric for ComplexMatrix {
         self.im.check_sizes(arg, &like.im)
     }
     fn assign(&mut self, x: &Self) {
-        self.re.copy_from(&x.re);
-        self.im.copy_from(&x.im);
+        self.re.assign(&x.re);
+        self.im.assign(&x.im);
     }
     fn size(&self) -> f64 {
         norm_frobenius(&self.re).hypot(norm_frobenius(&self.im))

@@ -12,8 +12,8 @@
 //! integrated as (L/J_y)·t and an elliptic integral of the third kind that weighs m_x. That weight is at most cn²τ, because
 //! n = B²/A² ≥ 1, and half of the time on average. So no more than a bit cancels at any ratio of the inertias (the textbook
 //! forms start from L/J_z or 2E/L and lose as many digits as that ratio has). And where J_z is nearly J_y, so that the
-//! integral is divided by a small λ, the weight is small in the same proportion. Of the modulus only 1 − k² is used, because near the separatrix k
-//! loses all its digits.
+//! integral is divided by a small λ, the weight is small in the same proportion. Of the modulus only 1 − k² is used,
+//! because near the separatrix k loses all its digits.
 //!
 //! These formulas set up an orbit, and evaluate it near the separatrix (1 − k² < 0.013) and for large n. Elsewhere sn, cn, dn
 //! and the periodic part of φ come from [`Theta`], which is five times as fast.

@@ -23,7 +23,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::body::*;
 use super::prelude::*;
 use crate::formula::{Formula, Names, Texts, without_value};
-use crate::problem::{PointOf, numbers_of, set_numbers};
+use crate::problem::{PointOf, Turned};
 use crate::reader::values;
 
 /// The entry in the list of kinds.
@@ -294,15 +294,8 @@ impl System for Driven {
     fn layer(&self) -> Layer {
         Layer::Closed
     }
-    fn numbers(&self, y: &Point) -> Vec<f64> {
-        numbers_of(&mut self.spec.axes.map_or(*y, |axes| turned(y, &axes)))
-    }
-    fn set_point(&self, y: &mut Point, arg: &str, numbers: &[f64]) -> Result<(), Error> {
-        set_numbers(y, arg, numbers)?;
-        if let Some(axes) = self.spec.axes {
-            *y = turned(y, &axes.transpose());
-        }
-        Ok(())
+    fn axes_of_points(&self) -> Option<(Matrix3<f64>, Turned<Self>)> {
+        Some((self.spec.axes?, |_, y, turn| turned(y, turn)))
     }
     fn problem(&self) -> Result<Start<spaces::Driven>, Error> {
         Ok((on(&self.body, &self.torques), self.start))

@@ -17,7 +17,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::body::*;
 use super::driven_body::{self, Torques};
 use super::prelude::*;
-use crate::problem::{PointOf, Runnable, numbers_of, set_numbers};
+use crate::problem::{PointOf, Runnable, Turned};
 
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {
@@ -339,16 +339,8 @@ impl<R: TopCoordinates> System for Top<R> {
     fn layer(&self) -> Layer {
         Layer::Closed
     }
-    fn numbers(&self, y: &PointOf<Self>) -> Vec<f64> {
-        let axes = self.spec.body.axes;
-        numbers_of(&mut axes.map_or_else(|| y.clone(), |axes| R::turned(y, &axes)))
-    }
-    fn set_point(&self, y: &mut PointOf<Self>, arg: &str, numbers: &[f64]) -> Result<(), Error> {
-        set_numbers(y, arg, numbers)?;
-        if let Some(axes) = self.spec.body.axes {
-            *y = R::turned(y, &axes.transpose());
-        }
-        Ok(())
+    fn axes_of_points(&self) -> Option<(Matrix3<f64>, Turned<Self>)> {
+        Some((self.spec.body.axes?, |_, y, turn| R::turned(y, turn)))
     }
     fn problem(&self) -> Result<Start<Self::Problem>, Error> {
         let TopSpec { body, vertical, .. } = &self.spec;

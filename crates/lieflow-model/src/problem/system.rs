@@ -13,6 +13,7 @@ use lieflow_runs::run::{
     Runnable, SharedRowOf, StepByStep, Stepper, Steps, Watcher, numbers_of, set_numbers,
 };
 use lieflow_runs::schema::{Law, Schema};
+use nalgebra::Matrix3;
 
 use super::forms::{Asked, Form, Forms, Run};
 use super::kind::{Figure, PrincipalInertia, Property, high_order};
@@ -66,17 +67,10 @@ pub(crate) trait System: Clone + Debug + Send + Sync + 'static {
         let samples = self.formula()?.samples()?;
         Some(Stops::at_kinks(samples.knots(t_span).collect::<Vec<_>>()))
     }
-    /// The numbers of a point, as they are read and set from outside: in the frame in which the problem is stated. By default
-    /// those of the point itself, in the order of [`Numbers`](lieflow::space::Numbers).
-    fn numbers(&self, y: &PointOf<Self>) -> Vec<f64> {
-        numbers_of(&mut y.clone())
-    }
-    /// y ← the point of these [`numbers`](Self::numbers), which are called `arg`.
-    ///
-    /// # Errors
-    /// [`Error::Length`] for another number of them.
-    fn set_point(&self, y: &mut PointOf<Self>, arg: &str, numbers: &[f64]) -> Result<(), Error> {
-        set_numbers(y, arg, numbers)
+    /// The axes of the body in the frame in which it is stated, where these differ, and what turns a point to other axes. The
+    /// numbers of a point are read and set in the frame in which the problem is stated.
+    fn axes_of_points(&self) -> Option<(Matrix3<f64>, Turned<Self>)> {
+        None
     }
     /// Checks a state that a run starts from in place of its own, beyond what the group and the action ask for.
     ///
@@ -118,6 +112,36 @@ pub(crate) trait System: Clone + Debug + Send + Sync + 'static {
     fn notes(&self) -> Vec<String> {
         Vec::new()
     }
+}
+
+/// The point with the axes of the body turned by this rotation.
+pub(crate) type Turned<S> = fn(&S, &PointOf<S>, &Matrix3<f64>) -> PointOf<S>;
+
+/// The numbers of a point, in the frame in which the problem is stated and in the order of
+/// [`Numbers`](lieflow::space::Numbers).
+fn numbers<S: System>(system: &S, y: &PointOf<S>) -> Vec<f64> {
+    let mut y = match system.axes_of_points() {
+        None => y.clone(),
+        Some((axes, turned)) => turned(system, y, &axes),
+    };
+    numbers_of(&mut y)
+}
+
+/// y ← the point of these [`numbers`], which are called `arg`.
+///
+/// # Errors
+/// [`Error::Length`] for another number of them.
+fn set_point<S: System>(
+    system: &S,
+    y: &mut PointOf<S>,
+    arg: &str,
+    numbers: &[f64],
+) -> Result<(), Error> {
+    set_numbers(y, arg, numbers)?;
+    if let Some((axes, turned)) = system.axes_of_points() {
+        *y = turned(system, y, &axes.transpose());
+    }
+    Ok(())
 }
 
 /// A problem that is set up, with its start.
@@ -177,7 +201,7 @@ impl<S: System> On<S> {
     fn start_at(&self, numbers: Option<&[f64]>) -> Result<PointOf<S>, Error> {
         let mut y = self.ready()?.1.clone();
         if let Some(numbers) = numbers {
-            self.system.set_point(&mut y, "y0", numbers)?;
+            set_point(&self.system, &mut y, "y0", numbers)?;
             self.system.check_state(&y)?;
         }
         Ok(y)
@@ -194,9 +218,9 @@ impl<S: System> On<S> {
     /// How the points of a run that starts at t0 are numbers.
     fn points(&self, quantities: &[usize], t0: f64) -> Points<S::Problem> {
         let [of, from] = [self.system.clone(), self.system.clone()];
-        let numbers = Box::new(move |y: &PointOf<S>| of.numbers(y));
-        let point = move |numbers: &[f64], y: &mut PointOf<S>| from.set_point(y, "state", numbers);
-        Points::by(self.shared(quantities, t0), numbers, Box::new(point))
+        let numbers_of_point = Box::new(move |y: &PointOf<S>| numbers(&of, y));
+        let point = move |x: &[f64], y: &mut PointOf<S>| set_point(&from, y, "state", x);
+        Points::by(self.shared(quantities, t0), numbers_of_point, Box::new(point))
     }
 
     /// The sizes of terms at y go to the end of `numbers`.
@@ -232,7 +256,7 @@ impl<S: System> Run for On<S> {
         self.system.modelled()
     }
     fn start(&self) -> Result<Vec<f64>, Error> {
-        Ok(self.system.numbers(&self.ready()?.1))
+        Ok(numbers(&self.system, &self.ready()?.1))
     }
     fn drive(
         &self,

@@ -193,15 +193,12 @@ class Samples:
         return (Samples, (self.t, self.values, self.interpolation, self.names))
 
 
-#: What a result has, which no part can be called. A part `y` is `r.y["y"]`.
+#: What a result or its y, a dict, has, which no part can be called. A part `y` is `r.y["y"]`.
 TAKEN = frozenset(
     "sol t t_events y_events t_end y_end nfev nsteps nrejected restored residual unsure_steps status message success drift "
-    "largest_step smallest_step keys check as_rotation to_dataframe estimate_error".split()
+    "largest_step smallest_step keys check as_rotation to_dataframe estimate_error "
+    "items values get copy pop popitem update clear setdefault fromkeys".split()
 )
-
-
-#: What y has, a dict.
-NOT_PARTS = frozenset("items values get copy pop popitem update clear setdefault fromkeys".split())
 
 
 class Parts:
@@ -227,8 +224,8 @@ class Parts:
         self.spaces = spaces
         sizes: dict[str, tuple[int, int, tuple[int, ...]]] = {}
         for name, space in spaces.items():
-            if name in TAKEN or name in NOT_PARTS or name.startswith("_"):
-                raise ArgumentError("spaces", repr(name), "another name: a result of a run has this one")
+            if name in TAKEN or name.startswith("_"):
+                raise ArgumentError("spaces", repr(name), "another name: a result of a run or its y has this one, or it begins with _")
             if not isinstance(space, str):
                 raise TypeError(f"{name}: a value of type {type(space).__name__}, expected the name of a space")
             word, _, count = space.partition(" ")

@@ -90,7 +90,7 @@ impl From<Steps> for StepByStep<'_> {
 pub struct Points<P: Runnable> {
     /// The values of the row.
     pub row_of: Box<SharedRowOf<P>>,
-    /// The numbers of a point; those of its row where there is none.
+    /// Makes the numbers of a point. Without it they are the numbers of the row.
     numbers: Option<NumbersOf<PointOf<P>>>,
     /// The point of numbers.
     pub point: PointFrom<PointOf<P>>,

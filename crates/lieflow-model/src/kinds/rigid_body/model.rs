@@ -21,7 +21,7 @@ use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 use crate::kinds::body::*;
 use crate::kinds::prelude::*;
-use crate::problem::{PointOf, Runnable, SERIES, numbers_of, set_numbers};
+use crate::problem::{PointOf, Runnable, SERIES, Turned};
 
 /// Where a body is: its momentum in the body, and its orientation where that is modelled.
 pub(super) struct Pose {
@@ -304,16 +304,8 @@ impl<R: BodyCoordinates> System for Body<R> {
 
     const DEFAULT_METHOD: Option<&'static str> = Some(SERIES);
 
-    fn numbers(&self, y: &PointOf<Self>) -> Vec<f64> {
-        let mut y = self.spec.axes.map_or_else(|| y.clone(), |axes| self.turned(y, &axes));
-        numbers_of(&mut y)
-    }
-    fn set_point(&self, y: &mut PointOf<Self>, arg: &str, numbers: &[f64]) -> Result<(), Error> {
-        set_numbers(y, arg, numbers)?;
-        if let Some(axes) = self.spec.axes {
-            *y = self.turned(y, &axes.transpose());
-        }
-        Ok(())
+    fn axes_of_points(&self) -> Option<(Matrix3<f64>, Turned<Self>)> {
+        Some((self.spec.axes?, Self::turned))
     }
     fn layer(&self) -> Layer {
         R::LAYER
