@@ -18,6 +18,9 @@ use rand_pcg::Pcg64;
 use crate::arrays::{Input, common, fill, output};
 use crate::error::{argument, refused};
 
+/// How far from 𝔤 or from the group an argument may be, relative to its size: as a start of a run.
+const OFF_MAX: f64 = 1e-6;
+
 /// A group of matrices.
 #[pyclass(frozen, module = "lieflow._lieflow")]
 pub(crate) struct MatrixGroup(Group);
@@ -48,12 +51,18 @@ fn of_second(error: Error) -> Error {
 }
 
 impl MatrixGroup {
+    /// The element of 𝔤 that is nearest to a matrix, which is in 𝔤 to [`OFF_MAX`].
     fn algebra(&self, rows: &[f64]) -> Result<AlgebraMatrix, Error> {
-        self.0.algebra(matrix(self.0.n(), rows))
+        let u = matrix(self.0.n(), rows);
+        self.0.algebra(u.clone()).or_else(|_| {
+            let near = self.0.algebra_within(u, OFF_MAX)?;
+            Ok(self.0.project_algebra(near.as_ref()))
+        })
     }
 
+    /// A matrix that is in the group to [`OFF_MAX`].
     fn element(&self, rows: &[f64]) -> Result<GroupMatrix, Error> {
-        self.0.element(matrix(self.0.n(), rows))
+        self.0.element_within(matrix(self.0.n(), rows), OFF_MAX)
     }
 
     fn one<'py>(
@@ -163,11 +172,14 @@ impl MatrixGroup {
             _ => Structure::General,
         };
         fill(py, &[("u", numbers, n * n)], (out, &lead), |[numbers], out| {
-            for (index, u) in numbers.chunks_exact(n * n).enumerate() {
-                self.algebra(u)
-                    .map_err(|error| Error::Element { index, source: Box::new(error) })?;
+            let mut elements = vec![0.0; numbers.len()];
+            let rows = numbers.chunks_exact(n * n).zip(elements.chunks_exact_mut(n * n));
+            for (index, (u, element)) in rows.enumerate() {
+                let u = self.algebra(u);
+                let u = u.map_err(|error| Error::Element { index, source: Box::new(error) })?;
+                write(&u, element);
             }
-            crate::expm::real(n, numbers, structure, out)
+            crate::expm::real(n, &elements, structure, out)
         })
     }
     /// Return the u in 𝔤 with exp(u) = g; the principal one where it is in 𝔤.
@@ -317,7 +329,7 @@ impl MatrixGroup {
         let numbers = g.numbers();
         fill(py, &[("g", numbers, n * n)], (out, &lead), |[numbers], out| {
             for (g, out) in numbers.chunks_exact(n * n).zip(out) {
-                *out = match self.element(g) {
+                *out = match self.0.element(matrix(n, g)) {
                     Err(Error::Reflection { .. }) => 2.0,
                     Err(Error::Determinant { re, .. }) => (re - 1.0).abs(),
                     Err(Error::Singular { .. }) => f64::INFINITY,

@@ -377,19 +377,11 @@ impl Model {
             self.drive((&spec, start.clone()), (steps, save), &settings, &mut watch)
         };
         let (done, curve) = if attached { run() } else { py.detach(run) };
-        let (status, end) = match done {
-            Ok(Outcome { status, state, row, .. }) => (Ok(status), Some((state, row))),
-            Err(error) => (Err(error), None),
-        };
+        let status = done.map(|outcome| outcome.status);
         let result = watch.seen.into_dict(py, &raised, status, (&shape, LONGEST), Some(&steps))?;
         let lost = self.problem.formula().and_then(|formula| formula.lost(Which::First));
         result.set_item("lost", lost.map(|lost| lost.to_string()))?;
         result.set_item("curve", curve.map(|curve| Py::new(py, curve)).transpose()?)?;
-        let arrays = |(state, mut row): (Vec<f64>, Vec<f64>)| {
-            row.truncate(self.width());
-            (PyArray1::from_vec(py, row), PyArray1::from_vec(py, state))
-        };
-        result.set_item("end", end.map(arrays))?;
         Ok(result)
     }
     /// The name of the form of the problem that a method runs on. The numbers of a state are those of one form.

@@ -235,14 +235,21 @@ pub(crate) struct Watch {
     pub(crate) seen: Seen,
 }
 
+/// The end of a run, also of one that failed.
+struct End {
+    t: f64,
+    state: Vec<f64>,
+    row: Vec<f64>,
+    stats: Stats,
+}
+
 /// What was seen of a run.
 #[derive(Default)]
 pub(crate) struct Seen {
     rows: Rows,
     pub(crate) found: Vec<Rows>,
     ended_by_callback: bool,
-    /// The time and the numbers at the end, and what the run did.
-    end: Option<(f64, Vec<f64>, Stats)>,
+    end: Option<End>,
     last: Option<Instant>,
 }
 
@@ -329,7 +336,7 @@ impl Seen {
         if let Some(error) = raised.take() {
             return Err(error);
         }
-        let Some((t_end, y_end, stats)) = self.end else {
+        let Some(End { t: t_end, state, row: y_end, stats }) = self.end else {
             let error =
                 status.err().map_or_else(|| argument(py, "fun", "", ""), |e| of_run(py, &e));
             return Err(error);
@@ -360,6 +367,7 @@ impl Seen {
         result.set_item("message", message)?;
         result.set_item("t_end", t_end)?;
         result.set_item("y_end", field::array(py, shape, &y_end)?)?;
+        result.set_item("state", PyArray1::from_vec(py, state))?;
         result.set_item("nfev", stats.evaluations)?;
         result.set_item("nsteps", stats.accepted)?;
         result.set_item("nrejected", stats.rejected)?;
@@ -402,8 +410,9 @@ impl Watcher for Watching<'_> {
     fn progress(&mut self, _: f64) {
         self.seen.signals(self.raised);
     }
-    fn end(&mut self, t: f64, row: Row<'_>, stats: &Stats) {
-        self.seen.end = Some((t, row.values().to_vec(), *stats));
+    fn end(&mut self, t: f64, state: &[f64], row: Row<'_>, stats: &Stats) {
+        let (state, row) = (state.to_vec(), row.values().to_vec());
+        self.seen.end = Some(End { t, state, row, stats: *stats });
     }
 }
 

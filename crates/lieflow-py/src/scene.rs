@@ -3,9 +3,8 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use lieflow_model::problem::{Outcome, Plan};
+use lieflow_model::problem::Plan;
 use lieflow_model::scene;
-use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -90,15 +89,8 @@ impl Scene {
             (done, lost)
         });
         let width = model.schema().columns().count();
-        let (status, end) = match done {
-            Ok(Outcome { status, state, mut row, .. }) => {
-                row.truncate(width);
-                (Ok(status), Some((PyArray1::from_vec(py, row), PyArray1::from_vec(py, state))))
-            }
-            Err(error) => (Err(error), None),
-        };
+        let status = done.map(|outcome| outcome.status);
         let result = seen.into_dict(py, &raised, status, (&[width], "h_max"), None)?;
-        result.set_item("end", end)?;
         result.set_item("form", model.problem_type(&self.0.method))?;
         if let Some(lost) = lost {
             result.set_item("message", lost)?;

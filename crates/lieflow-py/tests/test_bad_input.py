@@ -366,3 +366,15 @@ def test_an_event_at_the_start_in_a_short_step():
             events=[lambda t, y: t - t0, lambda t, y: y[1, 0]],
         )
         assert [list(times) for times in run.t_events] == [[t0], [t0]], (t0, step)
+
+
+def test_names_and_lists_of_numbers_are_read_before_they_are_used():
+    body = lf.RigidBody(inertia=[1, 2, 3], momentum_body=[1, 0, 0])
+    with pytest.raises(TypeError, match="t0: 'a', expected a number"):
+        body.exact([0, 1], t0="a")
+    with pytest.raises(TypeError, match="method: a value of type int, expected a name"):
+        body.orders(3)
+    with pytest.raises(TypeError, match=r"names\[0\]: a value of type int, expected a name"):
+        lf.Samples([0, 1], [1, 2], names=[3])
+    with pytest.raises(lf.ArgumentError, match=r"stops: shape \(1, 2\), expected a list of numbers"):
+        lf.solve_ivp(body, (0, 1), stops=[[0.2, 0.5]])

@@ -152,3 +152,23 @@ def test_lielabs_checks_of_exp_and_log(rng):
         if group.name != "GL(3)":
             assert np.abs(group.cay(u) - (np.eye(n) + u + u @ u / 2)).max() < 1e-3
             assert group.contains(group.cay(u), 1e-14)
+
+
+def test_elements_to_six_digits_have_maps(rng):
+    # As a start of a run, and as so3 and se3.
+    for group in (lf.SO(3), lf.SO(4), lf.SO(3, 1), lf.Sp(4), lf.SL(3), lf.Gm(np.diag([1.0, 2, 3]))):
+        n = group.n
+        u = group.project(0.3 * rng.standard_normal((n, n)))
+        off = 1e-8 * rng.standard_normal((n, n))
+        exact = group.exp(u)
+        assert np.abs(group.exp(u + off) - exact).max() < 1e-7 and group.contains(group.exp(u + off)), group
+        found = group.log(exact + off)
+        assert np.abs(found - u).max() < 1e-6 and np.abs(found - group.project(found)).max() < 1e-15, group
+        assert np.abs(group.dexp(u + off, u) - u).max() < 1e-7
+        if group.name != "SL(3)":
+            assert np.abs(group.cay_inv(group.cay(u) + off) - u).max() < 1e-6, group
+        with pytest.raises(lf.ArgumentError, match="Lie algebra"):
+            group.exp(np.eye(n))
+        with pytest.raises(lf.ArgumentError):
+            group.log(exact + 1e-3)
+        assert not group.contains(exact + 1e-3)

@@ -298,3 +298,14 @@ def test_angles_of_subspaces_have_their_digits_at_both_ends():
 def test_memory_that_is_not_there_is_an_error():
     with pytest.raises(MemoryError):
         lf.SO(3).random(10**15)
+
+
+def test_the_end_of_a_failed_run_is_where_another_one_goes_on():
+    body = lf.RigidBody(inertia=[1, 2, 3], momentum_body=[1, 2, 3])
+    short = lf.solve_ivp(body, (0, 10), max_steps=5)
+    assert short.status == -1 and 0 < short.t_end < 10
+    assert np.array_equal(short.y_end["momentum_body"], short.y["momentum_body"][-1])
+    rest = lf.solve_ivp(body, (short.t_end, 10), short.y_end).check()
+    whole = lf.solve_ivp(body, (0, 10)).check()
+    for name in whole.y_end:
+        assert np.abs(rest.y_end[name] - whole.y_end[name]).max() < 1e-8, name

@@ -62,9 +62,9 @@ impl Watcher for OfBase<'_> {
     fn state(&mut self, bytes: &[u8]) {
         self.watcher.state(bytes);
     }
-    fn end(&mut self, t: f64, of_base: Row<'_>, stats: &Stats) {
+    fn end(&mut self, t: f64, state: &[f64], of_base: Row<'_>, stats: &Stats) {
         self.fill(t, of_base);
-        self.watcher.end(t, self.mapped.schema.row(&self.numbers), stats);
+        self.watcher.end(t, state, self.mapped.schema.row(&self.numbers), stats);
     }
 }
 

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from ._errors import ArgumentError
 
 __all__ = [
-    "MEMBERSHIP", "elements", "finite", "first", "into", "kept", "leading", "number", "own", "real", "series", "together",
+    "MEMBERSHIP", "elements", "finite", "first", "into", "kept", "leading", "name_of", "number", "own", "real", "series", "together",
     "value", "what", "whole",
 ]
 
@@ -96,6 +96,13 @@ def number(name: str, x: Any) -> float:
     if array.ndim > 0:
         raise ArgumentError(name, f"shape {array.shape}", "one number")
     return float(array)
+
+
+def name_of(argument: str, x: Any) -> str:
+    """Return x as a name."""
+    if not isinstance(x, str):
+        raise TypeError(f"{argument}: a value of type {type(x).__name__}, expected a name")
+    return x
 
 
 def whole(name: str, x: Any, least: int = 0, most: int = 2**63 - 1) -> int:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _lieflow
-from ._arrays import finite, kept, own, real
+from ._arrays import finite, kept, name_of, own, real
 from ._errors import ArgumentError
 from ._groups import Group
 
@@ -162,11 +162,11 @@ class Samples:
             self.values = self.values[:, None]
         if self.values.ndim != 2 or len(self.values) != len(self.t):
             raise ArgumentError("values", f"shape {self.values.shape}", f"shape ({len(self.t)}, n)")
-        if not isinstance(interpolation, str):
-            raise TypeError(f"interpolation: a value of type {type(interpolation).__name__}, expected a name")
-        self.interpolation = interpolation
+        self.interpolation = name_of("interpolation", interpolation)
         n = self.values.shape[1]
         self.names = tuple(names) if names is not None else ("s",) if n == 1 else tuple(f"s{j + 1}" for j in range(n))
+        for j, name in enumerate(self.names):
+            name_of(f"names[{j}]", name)
         if len(self.names) != n:
             raise ArgumentError("names", f"{len(self.names)} names", f"{n}, one for each column")
         if len(set(self.names)) < n:

@@ -21,7 +21,7 @@ class Group:
     """A group of n×n matrices with its maps on arrays of shape (..., n, n). Leading axes broadcast.
 
     :func:`lieflow.SO`, :func:`lieflow.GL`, :func:`lieflow.SL`, :func:`lieflow.Sp` and :func:`lieflow.Gm` make it. Arguments
-    are checked to be in 𝔤 or in G. Errors: :class:`lieflow.ArgumentError` with the place of the matrix, TypeError.
+    must be in 𝔤 or in G to 1e-6 of their size; the maps take the element of 𝔤 that is nearest. Errors: :class:`lieflow.ArgumentError` with the place of the matrix, TypeError.
 
     ========================  ====================================================
     ``exp(u)``, ``log(g)``    the exponential and its inverse

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._arrays import number, real
+from ._arrays import name_of, number, real
 from ._errors import ArgumentError
 from ._fields import Parts
 from ._ivp import METHOD, Ready, check_of_problem, check_stops, settings_of, span_of
@@ -62,8 +62,8 @@ class Integrator:
         quantities: Sequence[str] | str | None = None,
         **steps: Any,
     ) -> None:
-        if not (method is None or isinstance(method, str)):
-            raise TypeError(f"method: a value of type {type(method).__name__}, expected a name")
+        if method is not None:
+            name_of("method", method)
         self._given = (
             (problem, method, t_span, copy.deepcopy(y0)),
             {"args": args, "group": group, "action": action, "frame": frame, "linear": linear, "quantities": quantities, **steps},

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _lieflow
-from ._arrays import finite, kept, number, real, what, whole
+from ._arrays import finite, kept, name_of, number, real, what, whole
 from ._errors import ArgumentError, RunError
 from ._fields import CFunction, Field, Parts, Quantities, Samples, State, address
 from ._groups import Group
@@ -182,10 +182,18 @@ def settings_of(
         "steps": _count("steps", steps),
         "split": False,
         "kinks": [],
-        "stops": [] if stops is None or isinstance(stops, tuple) and not stops else np.atleast_1d(real("stops", stops)).tolist(),
+        "stops": [] if stops is None or isinstance(stops, tuple) and not stops else _list("stops", stops),
         "dense_output": _flag("dense_output", dense_output),
         "linear": _flag("linear", linear),
     }
+
+
+def _list(name: str, x: Any) -> list[float]:
+    """Return x as a list of numbers."""
+    array = np.atleast_1d(real(name, x))
+    if array.ndim > 1:
+        raise ArgumentError(name, f"shape {array.shape}", "a list of numbers")
+    return [float(number) for number in array]
 
 
 #: The last spaces: to make one again costs more than a short run.
@@ -213,8 +221,7 @@ class Ready:
             raise ArgumentError("group", "None", 'the name of a group, such as "SO(3)"')
         if not isinstance(group, (str, Group, Unitary, Parts)):
             raise TypeError(f"group: a value of type {type(group).__name__}, expected a name, a Group, U(n) or Parts")
-        if not isinstance(action, str):
-            raise TypeError(f"action: a value of type {type(action).__name__}, expected a name")
+        name_of("action", action)
         if not (frame is None or isinstance(frame, str)):
             raise TypeError(f"frame: a value of type {type(frame).__name__}, expected \"space\" or \"body\"")
         self.parts = group if isinstance(group, Parts) else None
@@ -423,8 +430,8 @@ def solve_ivp(
     Source: H. Munthe-Kaas, High order Runge–Kutta methods on manifolds, Appl. Numer. Math. 29 (1999).
     """
     span = span_of(t_span)
-    if not (method is None or isinstance(method, str)):
-        raise TypeError(f"method: a value of type {type(method).__name__}, expected a name")
+    if method is not None:
+        name_of("method", method)
     if isinstance(args, (str, bytes)) or not isinstance(args, Iterable):
         raise TypeError(f"args: {what(args)}, expected a tuple, as in args=(2.0,)")
     args = tuple(args)
@@ -467,7 +474,7 @@ def _of_field(
     found = _lieflow.solve(ready.space, ready.field, ready.args, method, span, ready.flat, settings, times, parts, told)
     seconds = thread_time() - clock
     warn_of_events(found, 3)
-    curve = found.pop("curve")
+    curve, _ = found.pop("curve"), found.pop("state")
     if found["nfev"] is not None:
         found["nfev"] += 1  # the call that checks the value of f at the start
     if ready.layout is not None:
@@ -616,12 +623,12 @@ def _of_problem(
     found = model.solve(method, span, start, settings, times, parts, told)
     seconds = thread_time() - clock
     warn_of_events(found, 3)
-    curve, lost, end, rows = found.pop("curve"), found.pop("lost"), found.pop("end"), found["y"]
+    curve, lost, rows = found.pop("curve"), found.pop("lost"), found["y"]
     if lost is not None and found["status"] < 0:
         found["message"] += f": {lost}"
     found["y"] = layout.split(rows)
     found["y_events"] = [layout.split(y) for y in found["y_events"]]
-    found["y_end"] = None if end is None else State(layout.split(end[0]), end[1], problem._form(model, method))
+    found["y_end"] = State(layout.split(found["y_end"]), found.pop("state"), problem._form(model, method))
     sol = None if curve is None else OdeSolution(curve, (problem, method, asked, texts), layout)
     if sol is not None and found["status"] == 1 and found["t_end"] != span[1]:
 

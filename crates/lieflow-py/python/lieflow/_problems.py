@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _lieflow
-from ._arrays import finite, kept, own, real
+from ._arrays import finite, kept, name_of, number, own, real
 from ._errors import ArgumentError
 from ._fields import Quantities, Samples, State
 from ._result import Layout
@@ -137,7 +137,7 @@ class Problem:
 
     def orders(self, method: str) -> tuple[int | None, int | None]:
         """Return the order of the steps of a method, and that of its dense output; None for one that is exact."""
-        return self._model(self.quantities).orders(method)
+        return self._model(self.quantities).orders(name_of("method", method))
 
     def exact(self, t: ArrayLike, quantities: Sequence[str] | str | None = None, *, t0: float = 0.0) -> Quantities | None:
         """Return the exact motion at the times t, from the start at t0; None where it is not known.
@@ -146,7 +146,7 @@ class Problem:
         """
         asked = self.asked(quantities)
         times = real("t", t)
-        found = self._model(asked, ()).exact(float(t0), np.ascontiguousarray(times.ravel()), self.method)
+        found = self._model(asked, ()).exact(number("t0", t0), np.ascontiguousarray(times.ravel()), self.method)
         if found is None:
             return None
         return self._layout(asked, ()).split(found.reshape(times.shape + found.shape[1:]))

@@ -213,7 +213,7 @@ class Result:
     largest_step : float
         The largest accepted step.
     t_end, y_end : float, array
-        The end of the run. Of a problem ``y_end`` may be the ``y0`` of another run; it is None if the run failed.
+        The end of the run, also of one that failed. ``y_end`` may be the ``y0`` of another run.
     drift : dict
         Of a problem: the largest |value − value at the start| of each invariant, over the output. The start is that of the
         run, also where the output begins later.
@@ -375,7 +375,7 @@ class Result:
 
     def _error_at_end(self, other: Result, grown: Result | None) -> Any:
         """The error of y_end, where a run has no outputs."""
-        if self.status != 0 or self.y_end is None or self._changes:
+        if self.status != 0 or self._changes:
             raise RunError("no estimate: the run has no outputs, and it did not end at the end of its span without changes")
 
         ends = [self.y_end, other.y_end] if grown is None else [self.y_end, other.y_end, grown.y_end]

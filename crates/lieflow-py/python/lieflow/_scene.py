@@ -69,9 +69,8 @@ class Scene:
         rows = found["y"]
         found["y"] = layout.split(rows)
         found["y_events"] = [layout.split(y) for y in found["y_events"]]
-        end, form = found.pop("end"), found.pop("form")
-        problem = self.problem
-        found["y_end"] = None if end is None else State(layout.split(end[0]), end[1], problem._form_of(form))
+        problem, form = self.problem, found.pop("form")
+        found["y_end"] = State(layout.split(found["y_end"]), found.pop("state"), problem._form_of(form))
 
         def again(_: Result) -> Any:
             raise RunError("a scene is not run again: solve_ivp(scene.problem, scene.t_span).estimate_error() has an estimate")

@@ -200,7 +200,8 @@ pub(super) fn drive_by<P: Runnable>(
     };
     if let Some(end) = end {
         fill(end.t, &end.y);
-        watcher.borrow_mut().end(end.t, schema.row(&numbers.borrow()), &end.stats);
+        let (state, row) = (all.numbers_of(end.t, &end.y), numbers.borrow());
+        watcher.borrow_mut().end(end.t, &state, schema.row(&row), &end.stats);
     }
     let Solution { t, y, status, stats, .. } = done?;
     Ok(Outcome { t, status, stats, state: all.numbers_of(t, &y), row: numbers.take() })

@@ -220,8 +220,9 @@ pub trait Watcher {
     fn progress(&mut self, _t: f64) {}
     /// The state, to go on from.
     fn state(&mut self, _bytes: &[u8]) {}
-    /// The end of a run that began, also of one that failed: the time, the row, and what the run did.
-    fn end(&mut self, _t: f64, _row: Row<'_>, _stats: &Stats) {}
+    /// The end of a run that began, also of one that failed: the time, the numbers of the state, the row, and what the
+    /// run did.
+    fn end(&mut self, _t: f64, _state: &[f64], _row: Row<'_>, _stats: &Stats) {}
 }
 
 /// A sink as a watcher.
