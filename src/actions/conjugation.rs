@@ -76,7 +76,7 @@ impl Action<MatrixGroup> for Conjugation {
         mul(dp, v.as_ref(), p.as_ref());
         mul_add(dp, -1.0, p.as_ref(), v.as_ref());
     }
-    /// On SO(n) the Frobenius norm of p is constant: p ← p + ½p(‖from‖² − ‖p‖²)/‖from‖², as for vectors.
+    /// On SO(n) the Frobenius norm of p is constant: p ← p + ½p(‖from‖² − ‖p‖²)/‖from‖², as for vectors. So is the trace.
     fn restore_to(
         &self,
         group: &MatrixGroup,
@@ -84,7 +84,20 @@ impl Action<MatrixGroup> for Conjugation {
         p: &mut Mat<f64>,
         _: &mut ConjugationWork,
     ) -> Option<f64> {
-        matches!(group.form(), Form::Identity).then(|| keep_length([from], [p]))
+        matches!(group.form(), Form::Identity).then(|| {
+            keep_trace(from, p);
+            keep_length([from], [p])
+        })
+    }
+}
+
+/// Corrects the trace of p to that of `from`: a multiple of 𝟙 is added.
+pub(super) fn keep_trace(from: &Mat<f64>, p: &mut Mat<f64>) {
+    let n = p.nrows();
+    let missing = (0..n).map(|i| from[(i, i)] - p[(i, i)]).sum::<f64>() / n as f64;
+    let size = squared_norm(from.as_ref()).sqrt();
+    if missing.abs() < RESIDUAL_MAX * size {
+        (0..n).for_each(|i| p[(i, i)] += missing);
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! The reason is that u(n)* is u(n) by ⟨m, v⟩ = Re tr(m†v).
 
-use super::conjugation::keep_length;
+use super::conjugation::{keep_length, keep_trace};
 use super::{Action, Coadjoint, Conjugation};
 use crate::error::Error;
 use crate::groups::{ComplexMatrix, LieAlgebra, Unitary, mul_adjoint_skew, mul_complex};
@@ -50,7 +50,7 @@ impl Action<Unitary> for Conjugation {
     ) {
         group.bracket(v, p, dp);
     }
-    /// The Frobenius norm of p is constant.
+    /// The Frobenius norm and the trace of p are constant.
     fn restore_to(
         &self,
         _: &Unitary,
@@ -58,6 +58,7 @@ impl Action<Unitary> for Conjugation {
         p: &mut ComplexMatrix,
         _: &mut ComplexMatrix,
     ) -> Option<f64> {
+        keep_trace(&from.im, &mut p.im);
         Some(keep_length(from.parts(), p.parts_mut()))
     }
 }

@@ -14,12 +14,13 @@ use super::embedded::ratio_in_algebra;
 use super::extension::{EXTRA, Extension};
 use super::stages::{Stages, copies};
 use super::{Embedded, Facts, MapCounts, Method, Step, StepCost, Tableau, Within};
+use crate::actions::Action;
 use crate::error::{Error, StepError};
 use crate::groups::LieAlgebra;
 use crate::maps::CoordinateMap;
 use crate::problems::{AlgOf, PointOf, Problem, ScalarOf};
-use crate::scalar::Real;
-use crate::tolerance::Tolerance;
+use crate::scalar::{Real, larger, smaller};
+use crate::tolerance::{Scales, Tolerance};
 
 /// RKMK with S stages and the map Ψ.
 ///
@@ -185,6 +186,11 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> Method<P> for Rkm
     }
 }
 
+/// Steps by error turn the state by so many radians at most. Where f is almost constant, a step could be longer. But at large u
+/// dΨ⁻¹ multiplies the rounding of the stages, again and again in the further stages of dense output, and the error of a step
+/// does not see these.
+const FARTHEST: f64 = 8.0;
+
 impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> Embedded<P> for Rkmk<Psi, S> {
     fn step_with_error(
         &self,
@@ -209,10 +215,23 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> Embedded<P> for R
             Some(estimate) => estimate.error(size),
             None => ScalarOf::<P>::lit(f64::INFINITY),
         };
-        if !error.is_finite() && self.tableau.error.is_some() {
+        let Some(estimate) = &self.tableau.error else { return Ok(error) };
+        if !error.is_finite() {
             let error = StepError::NotFinite { what: "the error estimate" };
             return Err(stages.blame(problem, error));
         }
-        Ok(error)
+        // A step that turns as far as it may has an error of 1, which grows in the order of the estimate. One that turns farther
+        // is accepted: it may be the first one, or the least.
+        let of_turn = |turn: ScalarOf<P>| {
+            let part = turn / ScalarOf::<P>::lit(FARTHEST);
+            (0..=estimate.order).fold(ScalarOf::<P>::lit(1.0), |power, _| power * part)
+        };
+        if !(error - of_turn(length)).any_below(0.0) {
+            return Ok(error);
+        }
+        alg.combine(step.h, &self.tableau.b, k, u);
+        let relative = problem.action().error_ratio(alg, u, from, &mut Scales::relative());
+        let error_of_turn = of_turn(smaller(length, relative));
+        Ok(larger(error, smaller(ScalarOf::<P>::lit(1.0), error_of_turn)))
     }
 }

@@ -140,6 +140,7 @@ impl ExpAt {
             Exact::Eigen(eigen) => {
                 self.dexpinv = Dexpinv::Eigen;
                 eigen.function_of_ad(u, v, |theta| phi(theta, norm))?;
+                group.keep_complex(v);
                 finite(group, v, "dexp⁻¹")
             }
             Exact::Schur(schur) => {
@@ -174,7 +175,11 @@ impl ExpAt {
         }
         match &mut self.exact {
             Exact::None => Err(DIVERGES),
-            Exact::Eigen(eigen) => eigen.function_of_ad(u, v, |theta| Ok(phi1(theta))),
+            Exact::Eigen(eigen) => {
+                eigen.function_of_ad(u, v, |theta| Ok(phi1(theta)))?;
+                group.keep_complex(v);
+                Ok(())
+            }
             Exact::Schur(schur) => {
                 let s = scale_down(u, norm, &mut self.scaled);
                 self.powers.ad.copy_from(&**v);
