@@ -100,6 +100,9 @@ impl Timeline {
             None => self.first_step(run.points(), stop),
         };
         let mut in_a_row = 0;
+        // Beside a jump of f the error of a step falls like its length. Where no step is short enough by an error relative to that,
+        // it is relative to the whole of a part.
+        let (mut is_whole, mut first_size) = (false, 0.0_f64);
         loop {
             h = h.max(min_step);
             if in_a_row == 0 && !self.is_exact() {
@@ -113,6 +116,10 @@ impl Timeline {
                 return Err(self.underflow(h, None));
             }
             self.see_noise_again(run.points(), size);
+            if is_whole {
+                run.points().weigh_whole(true);
+            }
+            first_size = first_size.max(size);
             let step = self.step_to(end, end - self.t, jumps && end == stop);
             let Pacer::ByError(chooser) = &self.pacer else { return Ok(()) };
             let sizes = Sizes::new(chooser, stop, self.largest_size(1.0));
@@ -172,6 +179,11 @@ impl Timeline {
                     // Next to t two steps of different sizes may be one after rounding.
                     let smaller = self.propose(h, stop).0;
                     let stuck = smaller == self.t || smaller == end;
+                    let is_hard = stuck || 2 * in_a_row == REJECTIONS_MAX;
+                    if !is_whole && rejected.is_ok() && h >= min_step && is_hard {
+                        (is_whole, h) = (true, first_size);
+                        continue;
+                    }
                     if in_a_row >= REJECTIONS_MAX || h < min_step || stuck {
                         // Of a step that may not be smaller it is the size that was tried.
                         let h = if h < min_step { size } else { h };
@@ -319,6 +331,7 @@ impl Timeline {
         let Stats { accepted, rejected, .. } = self.stats;
         let h = h.copysign(self.t1 - self.t);
         let left = (self.goal - self.t).abs();
-        RunError::TooManySteps { t: self.t, left, h, accepted, rejected, max_steps }
+        let by_error = matches!(self.pacer, Pacer::ByError(_));
+        RunError::TooManySteps { t: self.t, left, h, accepted, rejected, max_steps, by_error }
     }
 }

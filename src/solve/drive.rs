@@ -135,10 +135,11 @@ impl Drive<'_> {
             }
         }
         // A state that was saved within a step.
-        if self.is_within
-            && let Some(status) = self.look_within(output)?
-        {
-            return Ok(status);
+        if self.is_within {
+            self.keep_step(output)?;
+            if let Some(status) = self.look_within(output)? {
+                return Ok(status);
+            }
         }
         while self.times.t != t1 {
             if self.is_cancelled(output, self.times.t) {
@@ -146,12 +147,7 @@ impl Drive<'_> {
             }
             self.pass_stops();
             self.step(output)?;
-            if self.keeps == Keeps::Pieces {
-                self.times.prepare_last(output.points())?;
-            }
-            if self.keeps != Keeps::Nothing {
-                output.keep(self.times.t, self.times.last)?;
-            }
+            self.keep_step(output)?;
             if !self.events.all.is_empty() {
                 let first_step = self.times.stats.accepted == 1;
                 self.events.search(&mut self.times, output, first_step)?;
@@ -166,6 +162,17 @@ impl Drive<'_> {
             self.show_end_of_step(output)?;
         }
         Ok(Status::Finished)
+    }
+
+    /// Keeps the last step, if steps are kept.
+    fn keep_step(&mut self, output: &mut dyn AnyOutput) -> Result<(), RunError> {
+        if self.keeps == Keeps::Pieces {
+            self.times.prepare_last(output.points())?;
+        }
+        match self.keeps {
+            Keeps::Nothing => Ok(()),
+            _ => output.keep(self.times.t, self.times.last),
+        }
     }
 
     /// True if the run is cancelled. Then its state is saved. Tells the time that the run has reached.
@@ -211,9 +218,13 @@ impl Drive<'_> {
         }
         let taken = self.times.stats.accepted;
         let mut steps = self.save.next_after(taken);
-        let is_watched = self.cancel.is_some() || self.progress.is_some();
+        let checkpoints = self.checkpoints.as_ref().map(|checkpoints| checkpoints.every);
+        let is_watched = self.cancel.is_some() || self.progress.is_some() || checkpoints.is_some();
         if is_watched {
-            steps = steps.min(taken.saturating_add(self.patience.steps()));
+            // A state after each step is asked for by a time of zero.
+            let each = checkpoints.is_some_and(|every| every.is_zero());
+            let most = if each { 1 } else { self.patience.steps() };
+            steps = steps.min(taken.saturating_add(most));
         }
         let time = [self.next_time(), self.next_stop.map(|stop| stop.t)].into_iter().flatten();
         let time = time.reduce(|a, b| if self.times.is_before(a, b) { a } else { b });

@@ -116,9 +116,10 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
         Ok(&self.points.y)
     }
 
-    /// As [`advance_to`](Self::advance_to), but returns after about this time on the clock, and after one step at least. Returns
-    /// true if t is reached. A caller that has other work in between, or can be cancelled, calls it until then. The limit of
-    /// attempts is that of all these calls.
+    /// Steps towards t for about this time on the clock, but at least one step. Returns true if t is reached.
+    ///
+    /// The last step ends at t, as in [`advance_to`](Self::advance_to). A caller that has other work in between, or can be
+    /// cancelled, calls it until then. The limit of attempts is that of all these calls.
     ///
     /// # Errors
     /// As [`advance_to`](Self::advance_to).
@@ -153,7 +154,7 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
         self.times.steps_before(&mut Alone(&mut self.points), stop, reach)?;
         if self.times.t == t {
             // The caller may change f now.
-            self.times.jumped_at = t;
+            (self.times.jumped_at, self.times.jumped_by_stop) = (t, false);
         }
         Ok(())
     }

@@ -127,8 +127,8 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
         Self::of(Held::Borrowed(problem), Held::Borrowed(method), t_span)
     }
 
-    /// The same with a problem and a method that the run shares. So an [`Integrator`] or a [`Continuous`] may outlive the
-    /// scope that made it, and move to another thread.
+    /// Solves a shared problem by a shared method, as [`new`](Self::new) does. So an [`Integrator`] or a [`Continuous`] may
+    /// outlive the scope that made it, and move to another thread.
     ///
     /// ```
     /// use lieflow::prelude::*;
@@ -359,6 +359,7 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
         if let Some(bytes) = resume {
             run.points.list = self.list;
             run.times.restore(&mut run.points, &bytes)?;
+            run.times.ask_for(run.times.t1);
         }
         Ok(run)
     }
@@ -449,7 +450,8 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
         Ok((stored(done, times, points)?, curve))
     }
 
-    /// The same with an observer, as [`run_with`](Self::run_with). An interrupted run has its interpolant up to there.
+    /// Runs from y₀ with an observer, as [`run_with`](Self::run_with) does, and returns the end and the interpolant. An
+    /// interrupted run has its interpolant up to there.
     pub fn run_interpolant_with<N: Into<Next>>(
         mut self,
         y0: PointOf<P>,

@@ -3,7 +3,7 @@
 //! | bytes | content |
 //! |---|---|
 //! | 8 | `lieflow` and the version of the format |
-//! | 8 | a hash of the group, the order of the method and the choice of steps |
+//! | 8 | a hash of what the run is: the words of `owner` |
 //! | 8 each | the numbers of the state, little endian |
 //! | 8 | a check sum of all bytes before |
 
@@ -11,6 +11,7 @@ use core::hash::Hasher;
 
 use fnv::FnvHasher;
 
+use super::control::StepControl;
 use super::drive::Drive;
 use super::integrator::Integrator;
 use super::points::{AnyPoints, Saved};
@@ -23,7 +24,7 @@ use crate::problems::{PointOf, Problem};
 use crate::space::Numbers;
 
 /// The name of the format, and its version.
-const HEADER: [u8; 8] = *b"lieflow\x05";
+const HEADER: [u8; 8] = *b"lieflow\x06";
 
 /// The largest number of values of a list.
 const LIST_MAX: u64 = 1 << 24;
@@ -99,22 +100,24 @@ fn write(owner: &str, words: &mut dyn FnMut(&mut Each<'_>)) -> Vec<u8> {
 /// Reads a state from bytes; `words` lists its words.
 fn read(owner: &str, bytes: &[u8], words: &mut dyn FnMut(&mut Each<'_>)) -> Result<(), Error> {
     let refuse = |why: &str| {
-        let expected = format!("the saved state of such a run, {why}");
+        let expected = format!("the saved state of this run, but {why}");
         Err(Error::out_of_range("bytes", bytes.len() as f64, expected))
     };
     let mut saved = bytes.chunks_exact(8).map(|word| word.try_into().unwrap_or_default());
     if !bytes.len().is_multiple_of(8) || bytes.len() < 24 {
-        return refuse("but its length is no such length");
+        return refuse("these are not the bytes of a state, by their number");
     }
     if saved.next() != Some(HEADER) {
-        return refuse("but it does not begin with `lieflow` and this version of the format");
+        return refuse("these bytes do not begin with `lieflow` and this version of the format");
     }
     let (body, sum) = bytes.split_at(bytes.len() - 8);
     if hash(body).to_le_bytes() != sum {
-        return refuse("but it is damaged: its check sum differs");
+        return refuse("these bytes are damaged: their check sum differs");
     }
     if saved.next() != Some(hash(owner.as_bytes()).to_le_bytes()) {
-        return refuse("but it is of another group, method, choice of steps or end of the span");
+        return refuse(
+            "these bytes are of another group, method, choice of steps or end of the span",
+        );
     }
     // Lists have a length of their own, so the words are counted as they are read.
     let there = bytes.len() / 8 - 3;
@@ -129,7 +132,7 @@ fn read(owner: &str, bytes: &[u8], words: &mut dyn FnMut(&mut Each<'_>)) -> Resu
     }
     let mut before = before.into_iter();
     words(&mut |word| *word = before.next().unwrap_or(0));
-    refuse("but it has another number of values")
+    refuse("these bytes have another number of values")
 }
 
 /// The length of a list, and its values. New values are the default.
@@ -150,6 +153,7 @@ impl Timeline {
         number(each, &mut self.t);
         number(each, &mut self.t1);
         number(each, &mut self.jumped_at);
+        flag(each, &mut self.jumped_by_stop);
         points.each_number(Saved::State, &mut |x| number(each, x));
         points.each_number(Saved::Start, &mut |x| number(each, x));
         each(&mut self.last.n);
@@ -199,13 +203,17 @@ impl Timeline {
         points.each_number(Saved::Memory, &mut |x| number(each, x));
     }
 
+    /// What a state belongs to.
     fn owner(&self, points: &dyn AnyPoints) -> String {
         let pace = match &self.pacer {
             // The size is that of the whole run, also after it was taken off its grid.
-            Pacer::Equal { grid, .. } => {
-                format!("{} {:?}", if grid.is_split() { "split" } else { "equal" }, grid.h().abs())
+            Pacer::Equal { grid, size, .. } => {
+                format!("{} {size:?}", if grid.is_split() { "split" } else { "equal" })
             }
-            Pacer::ByError(chooser) => format!("{:?}", chooser.control),
+            // A run that used up its attempts goes on with more of them.
+            Pacer::ByError(chooser) => {
+                format!("{:?}", StepControl { max_steps: 0, ..chooser.control.clone() })
+            }
         };
         let costs = (self.facts.step.evaluations, self.facts.step.maps);
         let (group, order, end) = (points.group_name(), self.facts.order, self.t1);
@@ -234,7 +242,8 @@ where
     PointOf<P>: Numbers,
 {
     /// The state as bytes. [`restore`](Self::restore) continues from them with the same results, to the bit. They do not
-    /// contain the problem or the method: that the numbers of the problem, the map and the stops are the same is not seen.
+    /// contain the problem or the method: [`restore`](Self::restore) does not see whether the numbers of the problem, the map and
+    /// the stops are the same.
     pub fn save(&mut self) -> Vec<u8> {
         self.points.list = Some(Numbers::each_number);
         self.times.save(&mut self.points)

@@ -81,6 +81,9 @@ impl Stats {
 
 /// A power of two above a number that is not negative, and at least ε/4. For numbers that are not f64.
 pub(super) fn power_of_two_above<S: Real>(x: S) -> f64 {
+    if !x.any_below(f64::INFINITY) {
+        return f64::INFINITY;
+    }
     let mut bound = f64::EPSILON / 4.0;
     while !x.all_below(bound) && bound < f64::MAX / 2.0 {
         bound *= 2.0;
@@ -154,17 +157,18 @@ pub enum RunError {
     },
     /// The attempts were used up.
     #[error(
-        "{max_steps} attempts did not reach the end: t = {}, last step h = {} ({accepted} accepted, {rejected} rejected){}",
+        "{max_steps} attempt{} did not reach the end: t = {}, next step h = {} ({accepted} accepted, {rejected} rejected){}",
+        if *max_steps == 1 { "" } else { "s" },
         Plain(.t),
         Plain(.h),
-        still_to_take(*left, *h)
+        still_to_take(*left, *h, *by_error)
     )]
     TooManySteps {
         /// The time of the last accepted point.
         t: f64,
         /// The time from there to the end of the run.
         left: f64,
-        /// The last step that was tried.
+        /// The size of the next step.
         h: f64,
         /// Steps accepted.
         accepted: u64,
@@ -172,6 +176,8 @@ pub enum RunError {
         rejected: u64,
         /// The limit.
         max_steps: u64,
+        /// True if the steps were chosen by their error.
+        by_error: bool,
     },
     /// The function of an event is not finite.
     #[error("event `{name}`: its value at t = {} is {value}, expected a finite number", Plain(.t))]
@@ -217,8 +223,8 @@ pub enum RunError {
 }
 debug_is_display!(RunError);
 
-/// The number of steps of the last size to the end, with one digit, and what to do.
-fn still_to_take(left: f64, h: f64) -> String {
+/// The number of steps of this size to the end, with one digit, and what to do.
+fn still_to_take(left: f64, h: f64, by_error: bool) -> String {
     if left == f64::INFINITY {
         return "; the span has no end, and no event ended the run: give t_span an end, or look at the function and the \
                 direction of the event"
@@ -230,7 +236,8 @@ fn still_to_take(left: f64, h: f64) -> String {
         true => format!(", the rest is about {about} steps of this size"),
         false => String::new(),
     };
-    format!("{rest}; raise max_steps or the tolerances")
+    let or = if by_error { "the tolerances" } else { "the step size" };
+    format!("{rest}; raise max_steps or {or}")
 }
 
 fn reason(source: &Option<StepError>, is_lost: bool) -> String {

@@ -5,8 +5,8 @@ use crate::error::Error;
 /// Times at which a step ends, in any order, and also outside the span. A list of times is one of jumps.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Stops {
-    /// Where f jumps. f(t) is the value after the jump, in the direction of the run: in a run backward it is the value at
-    /// earlier times.
+    /// Where f jumps. No stage is at such a time: f may have the value of either side there, or another one. At the ends of the
+    /// span, f is evaluated.
     pub jumps: Vec<f64>,
     /// Where derivatives of f jump, and f does not: the knots of sampled data.
     pub kinks: Vec<f64>,

@@ -22,7 +22,9 @@ pub(super) enum Pace {
 /// The state of the choice of steps.
 pub(super) enum Pacer {
     /// Equal steps: the grid, and the number of its steps that are done. A run that left its grid gets a new one.
-    Equal { grid: TimeGrid, done: u64, max_steps: u64 },
+    /// Of a grid, the size of its steps, those that are done, and the limit. A run that is taken off its grid has another one
+    /// from there, of the same size.
+    Equal { grid: TimeGrid, size: f64, done: u64, max_steps: u64 },
     /// Steps by their error.
     ByError(Chooser),
 }
@@ -80,6 +82,8 @@ pub(super) struct Timeline {
     before: u64,
     /// The last time at which f may jump: the start, a stop, or a time at which the caller could change it.
     pub(super) jumped_at: f64,
+    /// True if that is a stop at which f jumps: f may have the value of either side there, or another one.
+    pub(super) jumped_by_stop: bool,
     /// The last step.
     pub(super) last: Step<f64>,
     pub(super) looked_at: Looked,
@@ -116,7 +120,9 @@ impl Timeline {
         error_order: Option<usize>,
     ) -> Self {
         let pacer = match pace {
-            Pace::Equal { grid, max_steps } => Pacer::Equal { grid, done: 0, max_steps },
+            Pace::Equal { grid, max_steps } => {
+                Pacer::Equal { grid, size: grid.h().abs(), done: 0, max_steps }
+            }
             Pace::ByError(control) => {
                 let controller = Controller::new(error_order.unwrap_or(facts.order));
                 let (h, wall, has_events) = (None, None, false);
@@ -139,6 +145,7 @@ impl Timeline {
             goal: t1,
             before: 0,
             jumped_at: t0,
+            jumped_by_stop: false,
             last,
             looked_at,
             pacer,
@@ -198,7 +205,7 @@ impl Timeline {
     pub(super) fn changed(&mut self, by: &str, done: Result<(), Error>) -> Result<(), RunError> {
         done.map_err(|source| RunError::Changed { by: by.into(), t: self.t, source })?;
         self.looked_at = Looked::Nothing;
-        self.jumped_at = self.t;
+        (self.jumped_at, self.jumped_by_stop) = (self.t, false);
         self.turns.iter_mut().for_each(|turns| turns.next = 0);
         if let Pacer::ByError(chooser) = &mut self.pacer {
             chooser.h = None;
@@ -212,7 +219,7 @@ impl Timeline {
     /// Notes a stop that the run has reached.
     pub(super) fn pass(&mut self, stop: Stop) {
         if stop.jumps && stop.t == self.t {
-            self.jumped_at = stop.t;
+            (self.jumped_at, self.jumped_by_stop) = (stop.t, true);
         }
     }
 
@@ -221,7 +228,10 @@ impl Timeline {
         match t.is_finite() && !self.is_before(t, self.t) && !self.is_before(self.t1, t) {
             true => Ok(()),
             false => {
-                Err(Error::out_of_range("t", t, format!("a time from {} to {}", self.t, self.t1)))
+                let Timeline { t: now, t1, .. } = self;
+                let expected =
+                    format!("a finite time between {now}, the time of the run, and {t1}, its end");
+                Err(Error::out_of_range("t", t, expected))
             }
         }
     }
@@ -248,19 +258,40 @@ impl Timeline {
         }
     }
 
-    /// The step to `end`, of size h. If f jumps there, no stage is at `end`.
+    /// Is t a stop at which f jumps, and may a stage be there?
+    fn is_after_jump(&self) -> bool {
+        self.jumped_by_stop && self.t == self.jumped_at && !self.facts.stages_within
+    }
+
+    /// The step to `end`, of size h. If f jumps there, no stage is at `end`, and if t is a stop at which f jumps, none is at t.
     ///
-    /// Then the step has its whole size, and begins a few rounding units before t. If f may jump at t, too, it begins at
-    /// t and is shorter by a rounding unit.
+    /// A step to a jump has its whole size, and begins a few rounding units before t. One from a jump begins as much after t.
+    /// If f may jump at both, or may not be evaluated after `end`, the step is shorter by a rounding of t at each jump.
     pub(super) fn step_to(&self, end: f64, mut h: f64, jumps: bool) -> Step<f64> {
-        let (n, t) = (self.stats.accepted, self.t);
-        let unit = if jumps { unit(t, end) } else { 0.0 };
-        if t != self.jumped_at {
+        let (n, mut t) = (self.stats.accepted, self.t);
+        let unit = unit(t, end);
+        if self.is_after_jump() && unit != 0.0 {
+            if !jumps && end != self.goal && end != self.t1 {
+                return Step { n, t: t + MARGIN * unit, h };
+            }
+            let next = if unit > 0.0 { t.next_up() } else { t.next_down() };
+            let late = if t == 0.0 { unit } else { next - t };
+            (t, h) = (t + late, h - late);
+        }
+        if !jumps {
+            return Step { n, t, h };
+        }
+        if self.t != self.jumped_at {
             return Step { n, t: t - MARGIN * unit, h };
         }
-        // The end of a step of a grid may be a rounding after `end`.
+        // The end of a step of a grid may be a rounding after `end`. Half a unit is no change of a step that is longer than
+        // both times, across t = 0.
+        let mut less = 0.5 * unit;
         while unit != 0.0 && (t + h - end) * unit.signum() >= 0.0 {
-            h -= 0.5 * unit;
+            if h - less == h {
+                less *= 2.0;
+            }
+            h -= less;
         }
         Step { n, t, h }
     }
@@ -287,10 +318,9 @@ impl Timeline {
         {
             return Err(self.too_many(grid.h().abs(), *max_steps));
         }
-        let Pacer::Equal { grid, done, .. } = &mut self.pacer else { return Ok(()) };
+        let Pacer::Equal { grid, size, done, .. } = &mut self.pacer else { return Ok(()) };
         if self.t != grid.time(*done) {
-            // The run was taken off its grid: equal steps from here, of the same size.
-            let anew = TimeGrid::new([self.t, self.t1], grid.h().abs())?;
+            let anew = TimeGrid::new([self.t, self.t1], *size)?;
             *grid = if grid.is_split() { anew.split() } else { anew };
             *done = 0;
         }
@@ -305,6 +335,9 @@ impl Timeline {
         *done += u64::from(!before);
         let (step, end) = match before || (near && jumps) {
             true => (self.step_to(stop, grid.size_to(first, stop), jumps), stop),
+            false if self.is_after_jump() => {
+                (self.step_to(end, grid.step::<f64>(first).h, false), end)
+            }
             false => (Step { n, ..grid.step(first) }, end),
         };
         self.see_turns(points, step.h);
@@ -364,9 +397,11 @@ impl Timeline {
         end: u64,
         time: Option<f64>,
     ) -> Result<bool, RunError> {
-        let Pacer::Equal { grid, done, max_steps } = &mut self.pacer else { return Ok(false) };
+        let Pacer::Equal { grid, done, max_steps, .. } = &mut self.pacer else { return Ok(false) };
         let (grid, first) = (*grid, *done);
-        if grid.is_split() || self.stats.accepted != first || self.t != grid.time(first) {
+        let is_other =
+            grid.is_split() || self.stats.accepted != first || self.t != grid.time(first);
+        if is_other || self.jumped_by_stop && self.t == self.jumped_at {
             return Ok(false);
         }
         let most = self.before.saturating_add(*max_steps);

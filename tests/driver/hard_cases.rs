@@ -384,7 +384,9 @@ fn t12_many_steps_of_one_size() {
         let run =
             Solve::new(&body, &method, [0.0, f64::INFINITY]).dt(0.3).every(every).max_steps(100);
         match run.run(START).expect_err("no end").error {
-            RunError::TooManySteps { accepted: 100, max_steps: 100, t, .. } => {
+            RunError::TooManySteps {
+                accepted: 100, max_steps: 100, t, by_error: false, ..
+            } => {
                 assert!((t - 30.0).abs() < 1e-12)
             }
             other => panic!("{other}"),

@@ -5,6 +5,7 @@ mod controller;
 mod events;
 mod hard_cases;
 mod interpolant;
+mod jumps;
 mod leaves;
 mod modes;
 mod orbits;

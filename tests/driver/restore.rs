@@ -261,3 +261,86 @@ fn steps_of_another_size_do_not_go_on() {
     let refused = run(1000).resume(state).run(start).map(drop).map_err(|failed| failed.error);
     assert!(refused.is_err_and(|error| error.to_string().contains("choice of steps")));
 }
+
+/// A run that left its grid goes on from its states: where a stop is no time of the grid, and where the caller took it off.
+#[test]
+fn runs_off_their_grid_go_on() {
+    let (body, method) = (body(), Rkmk::new(RK4, Exp));
+    let solve = || Solve::new(&body, &method, [0.0, 1.0]).dt(0.1).stops([0.31, 0.62]);
+    let states = RefCell::new(Vec::new());
+    let keep = |bytes: &[u8]| states.borrow_mut().push(bytes.to_vec());
+    let whole = solve().checkpoints(Duration::ZERO, keep).run(START).expect("a run");
+    assert_eq!(states.borrow().len() as u64, whole.stats.accepted);
+    for state in states.into_inner() {
+        let rest = solve().resume(state).run(START).expect("its own state");
+        assert_eq!((bits(&rest.y), rest.stats.accepted), (bits(&whole.y), whole.stats.accepted));
+    }
+    let mut run = Solve::new(&body, &method, [0.0, 1.0]).dt(0.1).integrator(START).unwrap();
+    run.step().unwrap();
+    let early = run.save();
+    for end in [0.33, 0.57, 0.771] {
+        run.advance_to(end).unwrap();
+        run.step().unwrap();
+        let state = run.save();
+        run.restore(&state).expect("its own state");
+    }
+    run.restore(&early).expect("its own state");
+}
+
+/// A run whose attempts were used up goes on with more of them. An integrator counts those of each call.
+#[test]
+fn a_run_goes_on_with_more_attempts() {
+    let (body, method) = (body(), Rkmk::new(DOPRI5, Exp));
+    let solve =
+        |most: u64| Solve::new(&body, &method, [0.0, 10.0]).tolerances(1e-9, 1e-12).max_steps(most);
+    let whole = solve(100_000).run(START).expect("a run");
+    let last = RefCell::new(Vec::new());
+    let keep = |bytes: &[u8]| *last.borrow_mut() = bytes.to_vec();
+    assert!(solve(30).checkpoints(Duration::ZERO, keep).run(START).is_err());
+    let last = last.into_inner();
+    let rest = solve(100_000).resume(last.clone()).run(START).expect("the rest");
+    assert_eq!((bits(&rest.y), rest.stats.accepted), (bits(&whole.y), whole.stats.accepted));
+    let most = whole.stats.accepted / 2 + 20;
+    let mut run = solve(most).integrator(START).expect("a start");
+    run.advance_to(5.0).expect("half of the steps");
+    let mut rest = solve(most).resume(run.save()).integrator(START).expect("a state");
+    while !rest.advance_for(10.0, Duration::from_secs(60)).expect("the attempts of this call") {}
+    run.advance_to(10.0).expect("the other half");
+    assert_eq!(bits(rest.y()), bits(run.y()));
+}
+
+/// Zero means after every step, and checkpoints are taken without a flag or progress, too.
+#[test]
+fn checkpoints_of_methods_that_do_not_stay_on_m() {
+    let (body, method) = (body(), Rk(RK4));
+    let count = |every: Duration, steps: u64| {
+        let mut count = 0;
+        let solve = Solve::new(&body, &method, [0.0, 10.0]).steps(steps);
+        solve.checkpoints(every, |_| count += 1).run(START).expect("a run");
+        count
+    };
+    assert_eq!(count(Duration::ZERO, 1000), 1000);
+    assert!(count(Duration::from_millis(1), 3_000_000) > 10);
+}
+
+/// A curve has the rows of the same call, also where the state was saved between two rows of a step.
+#[test]
+fn a_curve_has_the_rows_after_a_state() {
+    let (body, method) = (body(), Rkmk::new(DOPRI5, Exp));
+    let solve = || Solve::new(&body, &method, [0.0, 10.0]).tolerances(1e-9, 1e-12).interval(0.01);
+    let states = RefCell::new(Vec::new());
+    let keep = |bytes: &[u8]| states.borrow_mut().push(bytes.to_vec());
+    solve().checkpoints(Duration::from_nanos(1), keep).run(START).expect("a run");
+    let states = states.into_inner();
+    assert!(states.len() > 500, "{} states, also between rows", states.len());
+    for state in states.into_iter().step_by(7) {
+        let (rest, curve) = solve().resume(state.clone()).run_interpolant(START).expect("a run");
+        let mut reader = curve.reader().expect("a reader");
+        for (t, y) in rest.times.iter().zip(&rest.points) {
+            assert!((reader.at(*t).expect("a time of the curve") - y).norm() < 1e-12, "t = {t}");
+        }
+        let mut rest = solve().resume(state).run_continuous(START).expect("a run");
+        let first = rest.solution.times[0];
+        assert!(rest.at(first).is_ok(), "t = {first}");
+    }
+}

@@ -377,7 +377,7 @@ pub struct MethodsArgs {
     #[arg(long = "for", value_name = "SCENE")]
     pub scene: Option<PathBuf>,
     /// Of these only what keeps this invariant of the scene for long times, as energy.
-    #[arg(long, value_name = "NAME", requires = "scene")]
+    #[arg(long, value_name = "NAME", requires = "scene", conflicts_with = "name")]
     pub keep: Option<String>,
     /// What is changed in the scene.
     #[command(flatten)]

@@ -376,6 +376,23 @@ fn methods_answers_for_tableaus_maps_and_parts() {
     assert!(message.contains("did you mean `dop853`?"), "{message}");
     let message = folder.lieflow(&["methods", "rkmk4 dopri5"]).refused();
     assert!(message.contains("there is no method `rkmk4 dopri5`: "), "{message}");
+    let message = folder.lieflow(&["methods", "rkmk4", "--keep", "energy"]).refused();
+    assert!(message.contains("'[NAME]' cannot be used with"), "{message}");
+}
+
+/// A limit on steps of given size is not raised by a tolerance.
+#[test]
+fn what_a_limit_on_steps_needs() {
+    let folder = Folder::new();
+    let told = |steps: &str| {
+        let args = ["run", "asymmetric-top", "--out", "out", "--set", "time.max_steps=1"];
+        folder.lieflow(&[&args[..], &["--set", steps]].concat()).failed(2)
+    };
+    let message = told("time.dt=0.25");
+    assert!(message.contains("1 attempt did not reach the end: t = 0.25"), "{message}");
+    assert!(message.contains("raise max_steps or the step size"), "{message}");
+    let message = told("time.dt=");
+    assert!(message.contains("raise max_steps or the tolerances"), "{message}");
 }
 
 /// The last row has its numbers by the names of the columns.

@@ -1,0 +1,178 @@
+//! Jumps of f: stops around t = 0, the value of f at a stop, jumps without a stop, and long steps where nothing happens.
+
+use lieflow::actions::{Conjugation, LeftTranslation, Linear};
+use lieflow::faer::{Mat, c64};
+use lieflow::groups::{
+    AlgebraMatrix, ComplexMatrix, LieAlgebra, LieGroup, MatrixGroup, So3, Unitary,
+};
+use lieflow::maps::{CoordinateMap, Exp};
+use lieflow::methods::commutator_free::{CF4, CF43};
+use lieflow::methods::low_storage::LS32;
+use lieflow::methods::tableau::{DOP853, DOPRI5};
+use lieflow::methods::{CommutatorFree, LowStorage, Rk, Rkmk};
+use lieflow::problems::{Flow, Problem};
+use lieflow::{Solve, StepControl};
+use nalgebra::Vector3;
+
+type V = Vector3<f64>;
+type Rate = fn(f64) -> f64;
+
+/// A turn about e₃ with this rate: what it ends at is the angle.
+fn spin(rate: impl Fn(f64) -> f64) -> impl Problem<Group = So3, Action = Linear> {
+    Flow::new(So3::new(), Linear, move |t, _: &V, v: &mut V| *v = V::new(0.0, 0.0, rate(t)))
+}
+
+fn angle(y: &V) -> f64 {
+    y[1].atan2(y[0])
+}
+
+/// A step from a stop to the next one, where 0 is between them, ended never: it is longer than both times.
+#[test]
+fn stops_on_both_sides_of_zero() {
+    let pulse = spin(|t| if (-0.6..0.6).contains(&t) { 1.0 } else { 0.5 });
+    for [t0, t1] in [[-6.0, 2.0], [2.0, -6.0], [-0.7, 0.61], [-0.6, 0.6], [-1e3, 1e3]] {
+        let exact = {
+            let within = |t: f64| t.clamp(-0.6, 0.6);
+            0.5 * (t1 - t0) + 0.5 * (within(t1) - within(t0))
+        };
+        let method = Rkmk::new(DOPRI5, Exp);
+        let solve = || Solve::new(&pulse, &method, [t0, t1]).stops([-0.6, 0.6]);
+        for run in [
+            solve().tolerances(1e-6, 0.0),
+            solve().tolerances(1e-3, 1e-3),
+            solve().steps(5),
+            solve().steps(1),
+        ] {
+            let end = angle(&run.run(V::x()).expect("a run").y);
+            assert!((end - exact).sin().abs() < 1e-12, "{t0} to {t1}: {end}, expected {exact}");
+        }
+    }
+}
+
+/// At a stop f may have a third value, as sign(0) = 0, or that of the other side, as t ≥ 3 in a run backward.
+#[test]
+fn the_value_of_f_at_a_stop_counts_for_nothing() {
+    let rates: [(&str, Rate); 3] = [
+        ("sign", |t| if t == 3.0 { 5.0 } else { f64::from(u8::from(t > 3.0)) }),
+        ("from", |t| f64::from(u8::from(t >= 3.0))),
+        ("after", |t| f64::from(u8::from(t > 3.0))),
+    ];
+    for (name, rate) in rates {
+        let problem = spin(rate);
+        for span in [[2.0, 4.0], [4.0, 2.0]] {
+            macro_rules! check {
+                ($($method:expr),*) => {$({
+                    let method = $method;
+                    let solve = || Solve::new(&problem, &method, span).stops([3.0]);
+                    for run in [solve().dt(0.25), solve().dt(0.3), solve().tolerances(1e-8, 1e-8)] {
+                        let run = run.run(V::x()).expect("a run");
+                        let off = (angle(&run.y).abs() - 1.0).abs();
+                        assert!(off < 1e-13, "{name}, {}, {span:?}: {off}", stringify!($method));
+                        assert_eq!(run.stats.rejected, 0, "{name}, {}, {span:?}", stringify!($method));
+                    }
+                })*};
+            }
+            check![Rkmk::new(DOP853, Exp), Rkmk::new(DOPRI5, Exp), CommutatorFree(CF43)];
+        }
+    }
+}
+
+/// Where errors are relative to the length of a step, both fall with the step size beside a jump of f.
+#[test]
+fn jumps_without_a_stop_are_passed() {
+    for (at, after) in [(5000.1, 2.0), (100.3, -30.0), (1.1, 1000.0)] {
+        let problem = spin(move |t| if t < at { 1.0 } else { after });
+        let exact = 1.0 + after;
+        macro_rules! pass {
+            ($($method:expr),*) => {$(for rtol in [1e-3, 1e-6, 1e-8] {
+                let control = StepControl::new(rtol, 0.0).expect("tolerances");
+                let method = $method;
+                let run = Solve::new(&problem, &method, [at - 1.0, at + 1.0]).control(control);
+                let run = run.run(V::x()).expect(stringify!($method));
+                let off = (angle(&run.y) - exact).sin().abs();
+                assert!(off < 100.0 * rtol, "{} at {at}, rtol = {rtol}: {off}", stringify!($method));
+            })*};
+        }
+        pass![
+            CommutatorFree(CF43),
+            LowStorage(LS32),
+            Rkmk::new(DOPRI5, Exp),
+            Rkmk::new(DOP853, Exp),
+            Rk(DOPRI5),
+            Rk(DOP853)
+        ];
+    }
+}
+
+/// A skew matrix.
+fn skew(n: usize) -> Mat<f64> {
+    let x = |i: usize, j: usize| ((3 * i + 7 * j + i * j) as f64).sin();
+    Mat::from_fn(n, n, |i, j| x(i, j) - x(j, i))
+}
+
+/// f that hardly changes allows long steps. What lies within them is as right as their ends, and on the group.
+#[test]
+fn rows_within_long_steps() {
+    let so4 = MatrixGroup::so(4).expect("a group");
+    let times: Vec<f64> = (0..=200).map(|k| 0.5 * f64::from(k)).collect();
+    let phase = |t: f64| t + 2.0 * (1.0 - (0.05 * t).cos());
+    for rtol in [1e-3, 1e-6, 1e-9] {
+        for changes in [0.0, 1.0] {
+            let a = skew(4);
+            let field = |t: f64, _: &_, v: &mut AlgebraMatrix| {
+                let rate = 1.0 + changes * 0.1 * (0.05 * t).sin();
+                (0..4).for_each(|j| (0..4).for_each(|i| v.as_mut()[(i, j)] = rate * a[(i, j)]));
+            };
+            let problem = Flow::new(so4.clone(), LeftTranslation, field);
+            let method = Rkmk::new(DOP853, Exp);
+            let run = Solve::new(&problem, &method, [0.0, 100.0]).tolerances(rtol, 0.0);
+            let run = run.times(&times[..]).run(so4.identity()).expect("a run");
+            for (t, y) in run.times.iter().zip(&run.points) {
+                let turn = if changes == 0.0 { *t } else { phase(*t) };
+                let mut u = so4.zero();
+                let from = so4.algebra(a.clone()).expect("an element");
+                so4.axpy(turn, &from, &mut u);
+                let exact = Exp.eval(&so4, &u).expect("exp");
+                let off = so4.distance(y, &exact);
+                assert!(off < rtol.min(1e-7), "rtol = {rtol}, t = {t}: {off}");
+            }
+        }
+    }
+}
+
+/// The same on U(3). The trace of a matrix that is conjugated does not drift.
+#[test]
+fn rows_and_traces_on_unitary_groups() {
+    let u3 = Unitary::new(3).expect("a group");
+    let h = skew(3);
+    let i_h = Mat::from_fn(3, 3, |i, j| {
+        let real = ((2 * i.min(j) + 3 * i.max(j)) as f64).cos();
+        c64::new(h[(i, j)], real)
+    });
+    let generator = ComplexMatrix::from_fn(3, 3, |i, j| i_h[(i, j)]);
+    let field = |_: f64, _: &_, v: &mut ComplexMatrix| v.clone_from(&generator);
+    let problem = Flow::new(u3, LeftTranslation, field);
+    for rtol in [1e-3, 1e-6] {
+        let method = Rkmk::new(DOP853, Exp);
+        let run = Solve::new(&problem, &method, [0.0, 100.0]).tolerances(rtol, 0.0);
+        let run = run.interval(0.5).run(u3.identity()).expect("a run");
+        for (t, y) in run.times.iter().zip(&run.points) {
+            let mut u = u3.zero();
+            u3.axpy(*t, &generator, &mut u);
+            let exact = Exp.eval(&u3, &u).expect("exp");
+            let off = u3.distance(y, &exact);
+            assert!(off < 1e-7, "rtol = {rtol}, t = {t}: {off}");
+            assert!(u3.defect(y) < 2e-14, "rtol = {rtol}, t = {t}: {}", u3.defect(y));
+        }
+    }
+    let conjugated = Flow::new(u3, Conjugation, field);
+    let start = ComplexMatrix::from_fn(3, 3, |i, j| {
+        c64::new(0.0, if i == j { 1.0 + i as f64 } else { 0.1 })
+    });
+    let trace = |y: &ComplexMatrix| (0..3).map(|i| y.im[(i, i)]).sum::<f64>();
+    let method = CommutatorFree(CF4);
+    let run = Solve::new(&conjugated, &method, [0.0, 2e4]).dt(0.1).run(start.clone());
+    let drift = trace(&run.expect("a run").y) - trace(&start);
+    // It was 4e-12 by the rounding of each step, in a straight line.
+    assert!(drift.abs() < 1e-13, "{drift}");
+}
