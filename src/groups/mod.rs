@@ -131,9 +131,11 @@ pub trait LieGroup: LieAlgebra {
     fn tangent(&self, v: &Self::Alg, g: &Self::Elem, out: &mut Self::Elem);
     /// y ← v·x = d/dε Ψ(εv)·x at ε = 0.
     fn apply_algebra(&self, v: &Self::Alg, x: &Self::Vector, y: &mut Self::Vector);
-    /// An error e ∈ 𝔤 at g, which acts from the left or from the right, in units of the tolerance: ‖e‖/(atol + rtol), because
-    /// e is an angle. The error of a part that is a linear space is that of the place to which exp(e) moves it. A product
-    /// returns the largest ratio of its parts.
+    /// An error e ∈ 𝔤 at g, which acts from the left or from the right, in units of the tolerance: ‖e‖/(atol + rtol).
+    ///
+    /// ‖e‖ counts as an angle in radian. It is the angle on [`So3`] and on unit quaternions. On matrices of any size it is the
+    /// Frobenius norm, √2 times the angle of a rotation in one plane. The error of a part that is a linear space is that of the
+    /// place to which exp(e) moves it. A product returns the largest ratio of its parts.
     #[inline]
     fn error_ratio(
         &self,
@@ -160,12 +162,12 @@ pub trait LieGroup: LieAlgebra {
     fn defect(&self, g: &Self::Elem) -> Self::Scalar;
 
     /// Checks the size of g, and that its numbers are finite. The driver calls this for the start of a run and, by
-    /// default, after every step.
+    /// default, after every step. The default checks that ‖g‖ is finite; it does not know a size.
     ///
     /// # Errors
-    /// [`Error::Shape`] with both sizes, [`Error::NotFiniteEntry`].
-    fn check_elem(&self, _g: &Self::Elem) -> Result<(), Error> {
-        Ok(())
+    /// [`Error::Shape`] with both sizes, [`Error::NotFiniteEntry`], [`Error::OutOfRange`].
+    fn check_elem(&self, g: &Self::Elem) -> Result<(), Error> {
+        check_norm(g.size())
     }
     /// Checks, at the start of a run, what neither the form of G nor [`correct`](Self::correct) sees: determinants on SL(n)
     /// and SU(n), the blocks of complex matrices, reflections.
@@ -179,8 +181,8 @@ pub trait LieGroup: LieAlgebra {
     ///
     /// # Errors
     /// As [`check_elem`](Self::check_elem).
-    fn check_vector(&self, _x: &Self::Vector) -> Result<(), Error> {
-        Ok(())
+    fn check_vector(&self, x: &Self::Vector) -> Result<(), Error> {
+        check_norm(x.size())
     }
 
     /// out ← g, into the existing storage. The default is `clone_from`, which allocates for some storage.
@@ -194,10 +196,11 @@ pub trait LieGroup: LieAlgebra {
         y.clone_from(x);
     }
 
-    /// True if every number in x is finite. A product g·x may overflow although g and x do not.
+    /// True if every number in x is finite. A product g·x may overflow although g and x do not. The default looks at ‖x‖. A group
+    /// whose products cannot overflow returns true.
     #[inline]
-    fn is_finite_vector(&self, _x: &Self::Vector) -> bool {
-        true
+    fn is_finite_vector(&self, x: &Self::Vector) -> bool {
+        x.size().is_finite()
     }
 
     /// The size that a residual of g is relative to: 1 on a compact group, max(1, ‖g‖²) where elements may be large.
@@ -227,6 +230,15 @@ pub trait LieGroup: LieAlgebra {
     #[inline]
     fn correct_vector(&self, _from: &Self::Vector, _x: &mut Self::Vector) -> Option<Self::Scalar> {
         None
+    }
+}
+
+/// Checks that the norm of a state is finite.
+#[inline]
+fn check_norm<S: Real>(norm: S) -> Result<(), Error> {
+    match norm.is_finite() {
+        true => Ok(()),
+        false => Err(Error::out_of_range("y", f64::NAN, "finite numbers")),
     }
 }
 

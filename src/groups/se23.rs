@@ -158,6 +158,11 @@ impl<S: Real> LieGroup for Se23<S> {
     fn check_vector(&self, x: &Vector3<S>) -> Result<(), Error> {
         check_finite(x.as_slice())
     }
+    /// The driver looks at the state after each step.
+    #[inline]
+    fn is_finite_vector(&self, _: &Vector3<S>) -> bool {
+        true
+    }
     /// Three parts: the rotation, the velocity and the place.
     #[inline]
     fn error_ratio(

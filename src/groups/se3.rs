@@ -143,6 +143,11 @@ impl<S: Real> LieGroup for Se3<S> {
     fn check_vector(&self, x: &Vector3<S>) -> Result<(), Error> {
         check_finite(x.as_slice())
     }
+    /// The driver looks at the state after each step.
+    #[inline]
+    fn is_finite_vector(&self, _: &Vector3<S>) -> bool {
+        true
+    }
     /// Two parts: the rotation and the translation.
     #[inline]
     fn error_ratio(

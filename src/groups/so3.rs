@@ -149,6 +149,11 @@ impl<S: Real> LieGroup for So3<S> {
     fn check_vector(&self, x: &Vector3<S>) -> Result<(), Error> {
         check_finite(x.as_slice())
     }
+    /// The driver looks at the state after each step.
+    #[inline]
+    fn is_finite_vector(&self, _: &Vector3<S>) -> bool {
+        true
+    }
     #[inline]
     fn correct(&self, g: &mut Matrix3<S>, [half, step]: [&mut Matrix3<S>; 2]) -> S {
         compose3(&g.transpose(), g, step);

@@ -115,6 +115,11 @@ impl<V: LinearSpace> LieGroup for Translations<V> {
     fn check_vector(&self, x: &V) -> Result<(), Error> {
         self.check_elem(x)
     }
+    /// The driver looks at the state after each step.
+    #[inline]
+    fn is_finite_vector(&self, _: &V) -> bool {
+        true
+    }
     #[inline]
     fn error_ratio(&self, e: &V, g: &V, _: bool, scales: &mut Scales<'_>) -> V::Scalar {
         g.error_ratio(Gap::of(e), scales)

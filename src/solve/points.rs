@@ -376,7 +376,12 @@ impl<'a, P: Problem, M: Method<P>> Points<'a, P, M> {
             to.clone_from(y); // also its size
             return checked;
         }
+        let is_same = to.is_same(y);
         check_on_manifold::<P>(problem, to, restore)?;
+        // The run itself may have left it, by the errors of its steps.
+        if !is_same && action.check_member(group, y).is_ok() {
+            action.check_member(group, to)?;
+        }
         action.assign(group, to, orbit);
         action.assign(group, to, y);
         Ok(())

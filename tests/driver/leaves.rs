@@ -9,7 +9,7 @@ use lieflow::maps::{Cay, Exp};
 use lieflow::methods::tableau::{DOPRI5, RK4};
 use lieflow::methods::{Embedded, EnergyCasimir, Rk, Rkmk};
 use lieflow::problems::{Euler, Flow, Kinetic, Lyapunov, PointOf, Problem};
-use lieflow::{Action, Error, Event, LieAlgebra, LieGroup, RunError, Solve};
+use lieflow::{Action, Error, Event, LieAlgebra, LieGroup, RunError, Solve, StepError};
 use nalgebra::{Matrix3, Vector3};
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
@@ -85,7 +85,7 @@ fn with_out(group: &MatrixGroup, x: &AlgebraMatrix, out: f64) -> AlgebraMatrix {
     v
 }
 
-/// A state that the caller sets is on M, and has its size. Of SL(n) a determinant is looked at in starts only.
+/// A state that the caller sets is on M, and has its size.
 #[test]
 fn a_state_that_is_set_is_on_the_group() {
     for group in groups() {
@@ -101,8 +101,7 @@ fn a_state_that_is_set_is_on_the_group() {
             twice[(i, i)] = 2.0;
         }
         let smaller = MatrixGroup::so(n - 1).map(|group| group.identity());
-        let twice = (group.name() != "SL(3)").then_some(twice);
-        for wrong in twice.into_iter().chain(smaller) {
+        for wrong in core::iter::once(twice).chain(smaller) {
             assert!(run.set_state(&wrong).is_err(), "{}", group.name());
         }
         assert_eq!(run.y()[(0, 0)], 1.0);
@@ -437,4 +436,131 @@ fn own_actions_end_at_numbers_that_are_not_finite() {
     let event = Event::new("lost", |t, _| t - 0.5).change(|_, y: &mut Vector3<f64>| y.x = f64::NAN);
     let told = solve().event(event).run(Vector3::x()).expect_err("no state").to_string();
     assert!(told.contains("lost"), "{told}");
+}
+
+/// The vectors by addition, with nothing but what the traits ask for.
+struct Plain;
+
+impl LieAlgebra for Plain {
+    type Scalar = f64;
+    type Alg = Vector3<f64>;
+    fn name(&self) -> String {
+        "plain".into()
+    }
+    fn dim(&self) -> usize {
+        3
+    }
+    fn zero(&self) -> Vector3<f64> {
+        Vector3::zeros()
+    }
+    fn set_zero(&self, u: &mut Vector3<f64>) {
+        u.fill(0.0);
+    }
+    fn axpy(&self, a: f64, x: &Vector3<f64>, y: &mut Vector3<f64>) {
+        *y += a * x;
+    }
+    fn bracket(&self, _: &Vector3<f64>, _: &Vector3<f64>, out: &mut Vector3<f64>) {
+        out.fill(0.0);
+    }
+    fn norm(&self, u: &Vector3<f64>) -> f64 {
+        u.norm()
+    }
+    fn is_finite(&self, u: &Vector3<f64>) -> bool {
+        u.iter().all(|x| x.is_finite())
+    }
+}
+
+impl LieGroup for Plain {
+    type Elem = Vector3<f64>;
+    type Vector = Vector3<f64>;
+    fn identity(&self) -> Vector3<f64> {
+        Vector3::zeros()
+    }
+    fn compose(&self, a: &Vector3<f64>, b: &Vector3<f64>, out: &mut Vector3<f64>) {
+        *out = a + b;
+    }
+    fn apply(&self, g: &Vector3<f64>, x: &Vector3<f64>, y: &mut Vector3<f64>) {
+        *y = g + x;
+    }
+    fn tangent(&self, v: &Vector3<f64>, _: &Vector3<f64>, out: &mut Vector3<f64>) {
+        *out = *v;
+    }
+    fn apply_algebra(&self, v: &Vector3<f64>, _: &Vector3<f64>, y: &mut Vector3<f64>) {
+        *y = *v;
+    }
+    fn distance(&self, a: &Vector3<f64>, b: &Vector3<f64>) -> f64 {
+        (a - b).norm()
+    }
+    fn defect(&self, _: &Vector3<f64>) -> f64 {
+        0.0
+    }
+}
+
+/// exp on it.
+struct Same;
+
+impl lieflow::maps::CoordinateMap<Plain> for Same {
+    type At = ();
+    fn name(&self) -> &'static str {
+        "same"
+    }
+    fn at(&self, _: &Plain) -> Result<(), Error> {
+        Ok(())
+    }
+    fn psi(
+        &self,
+        _: &Plain,
+        u: &Vector3<f64>,
+        (): &mut (),
+        g: &mut Vector3<f64>,
+    ) -> Result<(), StepError> {
+        *g = *u;
+        Ok(())
+    }
+    fn dpsi_inv(
+        &self,
+        _: &Plain,
+        _: &Vector3<f64>,
+        (): &mut (),
+        _: &mut Vector3<f64>,
+    ) -> Result<(), StepError> {
+        Ok(())
+    }
+}
+
+#[test]
+fn own_groups_end_at_numbers_that_are_not_finite() {
+    let method = Rkmk::new(RK4, Same);
+    let check = |action: &str, ends: &dyn Fn(f64, f64, bool) -> Result<f64, String>| {
+        let right = ends(0.0, 1.0, false).expect("a run");
+        assert!((right - 10.0).abs() < 1e-12, "{action}: {right}");
+        for (start, rate, changes) in [
+            (f64::NAN, 1.0, false),
+            (f64::INFINITY, 1.0, false),
+            (0.0, 1e308, false),
+            (0.0, 1.0, true),
+        ] {
+            let end = ends(start, rate, changes);
+            assert!(end.is_err(), "{action} from {start} with {rate}: {end:?}");
+        }
+    };
+    macro_rules! ends {
+        ($action:expr) => {
+            &|start, rate, changes| {
+                let field = move |_: f64, _: &Vector3<f64>, v: &mut Vector3<f64>| {
+                    *v = Vector3::new(1.0, 0.0, rate);
+                };
+                let flow = Flow::new(Plain, $action, field);
+                let mut solve = Solve::new(&flow, &method, [0.0, 10.0]).dt(0.5);
+                if changes {
+                    let lost = Event::new("lost", |t, _: &Vector3<f64>| t - 5.0);
+                    solve = solve.event(lost.change(|_, y: &mut Vector3<f64>| y.x = f64::NAN));
+                }
+                let run = solve.run(Vector3::new(0.0, 0.0, start));
+                run.map(|run| run.y.x).map_err(|failed| failed.to_string())
+            }
+        };
+    }
+    check("translation", ends!(LeftTranslation));
+    check("linear", ends!(Linear));
 }

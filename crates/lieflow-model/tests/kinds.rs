@@ -32,6 +32,8 @@ mod quantum;
 mod refused;
 #[path = "kinds/samples.rs"]
 mod samples;
+#[path = "kinds/states.rs"]
+mod states;
 #[path = "kinds/tops.rs"]
 mod tops;
 #[path = "kinds/values.rs"]

@@ -1,6 +1,7 @@
 //! Matrices in scenes: the checks of their entries, the names of the columns that show them, and what several
 //! kinds compute from them.
 
+use faer::MatRef;
 use lieflow::dense::{largest_entry, multiply, norm, squared_norm, symmetric_eigenvalues};
 use lieflow::groups::{GroupMatrix, LieGroup, MatrixGroup};
 use lieflow_runs::schema::{Law, Scale};
@@ -93,16 +94,29 @@ pub(super) fn check_antisymmetric(key: &str, x: &Mat<f64>, tolerance: f64) -> Re
 
 fn check_symmetry(key: &str, x: &Mat<f64>, sign: f64, tolerance: f64) -> Result<(), Refusal> {
     let allowed = tolerance * largest_entry(x.as_ref());
-    let mut lower = (0..x.nrows()).flat_map(|i| (0..=i).map(move |j| (i, j)));
-    let Some((i, j)) = lower.find(|&(i, j)| (x[(i, j)] - sign * x[(j, i)]).abs() > allowed) else {
-        return Ok(());
-    };
+    let Some((i, j)) = unlike(x.as_ref(), sign, allowed) else { return Ok(()) };
     let what = if sign > 0.0 { "a symmetric" } else { "an antisymmetric" };
     let mut message = format!("expected {what} matrix, but {} is {}", key.cell(j, i), x[(j, i)]);
     if i != j {
         message += &format!(" and {} is {}", key.cell(i, j), x[(i, j)]);
     }
     Err(Refusal::at(key.cell(i, j), message))
+}
+
+/// The first entry on or below the diagonal that is farther than `allowed` from `sign` times the one across the diagonal.
+pub(super) fn unlike(x: MatRef<'_, f64>, sign: f64, allowed: f64) -> Option<(usize, usize)> {
+    let mut lower = (0..x.nrows()).flat_map(|i| (0..=i).map(move |j| (i, j)));
+    lower.find(|&(i, j)| (x[(i, j)] - sign * x[(j, i)]).abs() > allowed)
+}
+
+/// The real matrix \[X −Y; Y X\] of X + iY, from \[X; Y\].
+pub(super) fn whole(x: MatRef<'_, f64>) -> Mat<f64> {
+    let n = x.ncols();
+    Mat::from_fn(2 * n, 2 * n, |i, j| match j < n {
+        true => x[(i, j)],
+        false if i < n => -x[(n + i, j - n)],
+        false => x[(i - n, j - n)],
+    })
 }
 
 /// The columns x1, …, xn.

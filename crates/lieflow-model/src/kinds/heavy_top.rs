@@ -16,6 +16,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::body::*;
 use super::driven_body::{self, Torques};
+use super::on_m;
 use super::prelude::*;
 use crate::problem::{PointOf, Runnable, Turned};
 
@@ -140,6 +141,10 @@ trait TopCoordinates: Clone + Debug + Send + Sync + 'static {
     fn pose(y: &Point<Self>) -> Pose;
     /// The point with the axes of the body turned by this rotation.
     fn turned(y: &Point<Self>, turn: &Matrix3<f64>) -> Point<Self>;
+    /// See [`System::check_state`].
+    fn check_state(_arg: &str, _y: &Point<Self>) -> Result<(), Error> {
+        Ok(())
+    }
     /// The momentum about the vertical.
     fn about_vertical(top: &HeavyTop, y: &Point<Self>) -> f64 {
         let Pose { mu, gamma, .. } = Self::pose(y);
@@ -176,6 +181,9 @@ impl TopCoordinates for MomentumAndVertical {
     }
     fn turned((mu, gamma): &Point<Self>, turn: &Matrix3<f64>) -> Point<Self> {
         (turn * mu, turn * gamma)
+    }
+    fn check_state(arg: &str, (_, gamma): &Point<Self>) -> Result<(), Error> {
+        on_m::check_unit("the vertical", arg, gamma.norm())
     }
 }
 
@@ -350,6 +358,9 @@ impl<R: TopCoordinates> System for Top<R> {
     fn counted(&self) -> Option<Counting> {
         let (_, start) = self.problem().ok()?;
         R::counted(&self.spec, start)
+    }
+    fn check_state(&self, arg: &str, y: &PointOf<Self>) -> Result<(), Error> {
+        R::check_state(arg, y)
     }
     fn modelled(&self) -> String {
         R::MODELLED.into()

@@ -8,6 +8,7 @@ use lieflow_runs::spaces::{MatrixAction, OnMatrices};
 use super::entries::{
     ROUNDING, check_symmetric, diagonal, eigenvalues, numbered, symmetric, upper, upper_columns,
 };
+use super::on_m;
 use super::prelude::*;
 
 /// The entry of Toda's flow in the list of kinds.
@@ -54,6 +55,8 @@ keys! { QrKeys {
 struct Isospectral {
     flow: IsospectralFlow,
     matrix: Mat<f64>,
+    /// Is it for positive matrices alone?
+    is_of_positive: bool,
 }
 
 type Q = Quantity<Isospectral>;
@@ -88,7 +91,7 @@ fn read_toda(keys: TodaKeys) -> Result<Forms, ReadError> {
         Either::Second(matrix) => matrix_of(&matrix)?,
     };
     let flow = IsospectralFlow::toda(matrix.nrows())?;
-    Ok(Forms::of(Isospectral { flow, matrix }))
+    Ok(Forms::of(Isospectral { flow, matrix, is_of_positive: false }))
 }
 
 fn read_double_bracket(keys: DoubleBracketKeys) -> Result<Forms, ReadError> {
@@ -104,18 +107,24 @@ fn read_double_bracket(keys: DoubleBracketKeys) -> Result<Forms, ReadError> {
     });
     let (matrix, (), order) = all!(matrix, symmetry, order)?;
     let flow = IsospectralFlow::double_bracket(&order)?;
-    Ok(Forms::of(Isospectral { flow, matrix }))
+    Ok(Forms::of(Isospectral { flow, matrix, is_of_positive: false }))
 }
 
 fn read_qr(keys: QrKeys) -> Result<Forms, ReadError> {
     let matrix = matrix_of(&keys.matrix?)?;
-    let smallest = eigenvalues(&matrix).first().copied().unwrap_or(f64::NAN);
-    if smallest.is_nan() || smallest <= 0.0 {
+    let (smallest, is_positive) = smallest(&matrix);
+    if !is_positive {
         let message = format!("an eigenvalue is {smallest:.4}, expected all eigenvalues to be > 0");
         return Err(Refusal::at("matrix", message).into());
     }
     let flow = IsospectralFlow::qr(matrix.nrows())?;
-    Ok(Forms::of(Isospectral { flow, matrix }))
+    Ok(Forms::of(Isospectral { flow, matrix, is_of_positive: true }))
+}
+
+/// The smallest eigenvalue, and whether it is positive.
+fn smallest(matrix: &Mat<f64>) -> (f64, bool) {
+    let smallest = eigenvalues(matrix).first().copied().unwrap_or(f64::NAN);
+    (smallest, smallest > 0.0)
 }
 
 impl System for Isospectral {
@@ -153,6 +162,14 @@ impl System for Isospectral {
     fn problem(&self) -> Result<Start<OnMatrices>, Error> {
         let action = MatrixAction::Conjugation;
         Ok((OnMatrices::new(self.flow.clone(), action), self.matrix.clone()))
+    }
+    fn check_state(&self, arg: &str, l: &Mat<f64>) -> Result<(), Error> {
+        on_m::check_symmetric(arg, l)?;
+        if !self.is_of_positive {
+            return Ok(());
+        }
+        let (smallest, is_positive) = smallest(l);
+        on_m::check_least(is_positive, format!("an eigenvalue of {arg}"), smallest, "a number > 0")
     }
     fn modelled(&self) -> String {
         format!("symmetric {0}×{0} matrix, conjugated by SO({0})", self.matrix.nrows())

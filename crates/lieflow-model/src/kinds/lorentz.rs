@@ -8,6 +8,7 @@ use lieflow::problems::{ChargedParticle, Flow, four_velocity, lorentz_transforma
 use lieflow_runs::spaces::{MatrixAction, OnMatrices};
 use nalgebra::Vector3;
 
+use super::on_m::{check_least, check_number};
 use super::prelude::*;
 
 /// The entry in the list of kinds.
@@ -48,6 +49,12 @@ fn read(keys: Keys) -> Result<Forms, ReadError> {
     Ok(Forms::of(Particle { tensor, start }))
 }
 
+/// The square of the four-velocity.
+fn mass_shell(u: &Mat<f64>) -> f64 {
+    let u = u.col_as_slice(0);
+    u[0] * u[0] + u[1] * u[1] + u[2] * u[2] - u[3] * u[3]
+}
+
 impl System for Particle {
     type Problem = OnMatrices;
 
@@ -75,12 +82,9 @@ impl System for Particle {
             let magnetic = (0..3).all(|i| particle.tensor[(i, 3)] == 0.0);
             magnetic.then_some(Law::by_the_flow(1))
         }),
-        Q::number("mass_shell", "square of the four-velocity, -1", |_, _, u| {
-            let u = u.col_as_slice(0);
-            u[0] * u[0] + u[1] * u[1] + u[2] * u[2] - u[3] * u[3]
-        })
-        .kept(Law::by_the_action(2))
-        .in_terms(|_, u| squared_norm(u.as_ref())),
+        Q::number("mass_shell", "square of the four-velocity, -1", |_, _, u| mass_shell(u))
+            .kept(Law::by_the_action(2))
+            .in_terms(|_, u| squared_norm(u.as_ref())),
     ];
 
     fn problem(&self) -> Result<Start<OnMatrices>, Error> {
@@ -88,6 +92,17 @@ impl System for Particle {
         let field = move |_: f64, v: &mut AlgebraMatrix| v.copy_from(&*tensor);
         let (group, action) = (MatrixGroup::indefinite(3, 1)?, MatrixAction::Linear);
         Ok((OnMatrices::linear(Flow::of_time(group, action, field), action), self.start.clone()))
+    }
+    fn check_state(&self, arg: &str, u: &Mat<f64>) -> Result<(), Error> {
+        let (square, size) = (mass_shell(u), squared_norm(u.as_ref()));
+        check_number(
+            format!("the square of {arg}"),
+            square,
+            -1.0,
+            size,
+            "that of a four-velocity",
+        )?;
+        check_least(u[(3, 0)] > 0.0, format!("gamma in {arg}"), u[(3, 0)], "a number > 0")
     }
     fn modelled(&self) -> String {
         "four-velocity, by SO(3,1)".into()

@@ -18,6 +18,7 @@ mod lorentz;
 mod lyapunov;
 mod matrix_ode;
 mod oja;
+mod on_m;
 pub mod own;
 mod pendulum;
 mod prelude;

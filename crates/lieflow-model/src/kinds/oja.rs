@@ -6,6 +6,7 @@ use lieflow::problems::Oja;
 use lieflow_runs::spaces::{MatrixAction, OnMatrices};
 
 use super::entries::{ROUNDING, check_rows, eigenvalues, rows, symmetric};
+use super::on_m::check_number;
 use super::prelude::*;
 
 /// The entry in the list of kinds.
@@ -66,6 +67,12 @@ fn orthonormal(x: &Mat<f64>) -> Result<Mat<f64>, ReadError> {
     Ok(Mat::from_fn(x.nrows(), x.ncols(), |i, j| q[(i, j)] * r[(j, j)].signum()))
 }
 
+/// ‖XᵀX − 𝟙‖.
+fn defect(x: &Mat<f64>) -> f64 {
+    let one = Mat::<f64>::identity(x.ncols(), x.ncols());
+    norm((multiply(x.transpose(), x.as_ref()) - one).as_ref())
+}
+
 impl System for OjaFlow {
     type Problem = OnMatrices;
 
@@ -80,17 +87,18 @@ impl System for OjaFlow {
             "trace of X'AX, which grows to the sum of the leading eigenvalues",
             |oja, _, x| oja.flow.trace(x),
         ),
-        Q::number("stiefel_defect", "distance of X'X from the identity", |_, _, x| {
-            let one = Mat::<f64>::identity(x.ncols(), x.ncols());
-            norm((multiply(x.transpose(), x.as_ref()) - one).as_ref())
-        })
-        // Degree 0: the classical form of the equation keeps it on the manifold alone.
-        .kept(Law::by_the_action(0).on_scale(Scale::One))
-        .of_distance(),
+        Q::number("stiefel_defect", "distance of X'X from the identity", |_, _, x| defect(x))
+            // Degree 0: the classical form of the equation keeps it on the manifold alone.
+            .kept(Law::by_the_action(0).on_scale(Scale::One))
+            .of_distance(),
     ];
 
     fn problem(&self) -> Result<Start<OnMatrices>, Error> {
         Ok((OnMatrices::new(self.flow.clone(), MatrixAction::Linear), self.x.clone()))
+    }
+    fn check_state(&self, arg: &str, x: &Mat<f64>) -> Result<(), Error> {
+        let distance = format!("the distance of {arg}ᵀ{arg} from the identity");
+        check_number(distance, defect(x), 0.0, 1.0, "that of orthonormal columns")
     }
     fn modelled(&self) -> String {
         format!("{} orthonormal columns in {} dimensions", self.x.ncols(), self.x.nrows())

@@ -7,6 +7,7 @@ use lieflow::scalar::Counted;
 use lieflow_runs::spaces::OnSe3;
 use nalgebra::Vector3;
 
+use super::on_m::{check_number, check_unit};
 use super::prelude::*;
 use crate::problem::SERIES;
 
@@ -97,6 +98,15 @@ impl System for Pendulum {
         let counted = OnSe3::lie_poisson_with_series(self.pendulum.on::<Counted>(), Coadjoint);
         let start = (self.start.0.map(Counted), self.start.1.map(Counted));
         counting(counted, start)
+    }
+    fn check_state(
+        &self,
+        arg: &str,
+        (omega, q): &(Vector3<f64>, Vector3<f64>),
+    ) -> Result<(), Error> {
+        check_unit("the direction", arg, q.norm())?;
+        let along = format!("the angular velocity along the rod in {arg}");
+        check_number(along, omega.dot(q), 0.0, omega.norm().max(1.0), "that of a point mass")
     }
     fn modelled(&self) -> String {
         "angular velocity and direction on an orbit of SE(3)".into()

@@ -12,6 +12,7 @@ use super::entries::{
     ROUNDING, check_symmetric, eigenvalues, numbered, square, symmetric, symmetric_part, upper,
     upper_columns,
 };
+use super::on_m;
 use super::prelude::*;
 
 /// The entry in the list of kinds.
@@ -125,6 +126,9 @@ impl System for Riccati {
         };
         let (group, action) = (MatrixGroup::sp(2 * m)?, MatrixAction::Lagrangian);
         Ok((OnMatrices::linear(Flow::of_time(group, action, field), action), self.p.clone()))
+    }
+    fn check_state(&self, arg: &str, p: &Mat<f64>) -> Result<(), Error> {
+        on_m::check_symmetric(arg, p)
     }
     fn modelled(&self) -> String {
         format!("symmetric {0}×{0} matrix, a Lagrangian subspace of dimension {0}", self.p.nrows())

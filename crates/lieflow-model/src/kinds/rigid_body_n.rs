@@ -4,6 +4,7 @@
 //! action), the energy, and for J_ij = λ_i + λ_j Manakov's further integrals.
 
 use super::entries::{above_diagonal, antisymmetric};
+use super::on_m::check_antisymmetric;
 use super::prelude::*;
 use crate::problem::SERIES;
 use lieflow::dense::multiply;
@@ -157,6 +158,9 @@ impl System for Body {
 
     fn problem(&self) -> Result<Start<RigidBodyN>, Error> {
         Ok((self.body.clone(), self.momentum.clone()))
+    }
+    fn check_state(&self, arg: &str, m: &Mat<f64>) -> Result<(), Error> {
+        check_antisymmetric(arg, m)
     }
     fn modelled(&self) -> String {
         format!("momentum on so(n)*, n = {}", self.n())

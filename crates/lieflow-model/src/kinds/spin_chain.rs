@@ -9,6 +9,7 @@ use lieflow::scalar::{Counted, Real as Scalar};
 use lieflow_runs::spaces::OnSpheres;
 use nalgebra::Vector3;
 
+use super::on_m::check_unit;
 use super::prelude::*;
 use crate::formula::{Formula, Names, Text, Texts, without_value};
 
@@ -384,6 +385,10 @@ impl System for Chain {
             Of::Numbers(..) => None,
             Of::Formulas(stated) => stated.each().next(),
         }
+    }
+    fn check_state(&self, arg: &str, spins: &Box<[Vector3<f64>]>) -> Result<(), Error> {
+        let mut spins = spins.iter().enumerate();
+        spins.try_for_each(|(i, spin)| check_unit(&format!("spin {}", i + 1), arg, spin.norm()))
     }
     fn modelled(&self) -> String {
         format!("{} spins on spheres", self.start.len())

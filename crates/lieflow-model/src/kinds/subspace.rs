@@ -9,6 +9,7 @@ use lieflow::problems::SubspaceFlow;
 use lieflow_runs::spaces::{MatrixAction, OnMatrices};
 
 use super::entries::{ROUNDING, check_rows, numbered, symmetric, trace, upper, upper_columns};
+use super::on_m::{check_number, check_symmetric};
 use super::prelude::*;
 
 /// The entry in the list of kinds.
@@ -101,6 +102,11 @@ impl Subspace {
     }
 }
 
+/// ‖P² − P‖.
+fn defect(p: &Mat<f64>) -> f64 {
+    norm((multiply(p.as_ref(), p.as_ref()) - p).as_ref())
+}
+
 type Q = Quantity<Subspace>;
 
 impl System for Subspace {
@@ -130,15 +136,20 @@ impl System for Subspace {
         ),
         Q::number("dimension", "trace of P, the dimension of the subspace", |_, _, p| trace(p))
             .kept(Law::by_the_action(0)),
-        Q::number("projector_defect", "distance of P² from P", |_, _, p| {
-            norm((multiply(p.as_ref(), p.as_ref()) - p).as_ref())
-        })
-        .kept(Law::by_the_action(0).on_scale(Scale::One))
-        .of_distance(),
+        Q::number("projector_defect", "distance of P² from P", |_, _, p| defect(p))
+            .kept(Law::by_the_action(0).on_scale(Scale::One))
+            .of_distance(),
     ];
 
     fn problem(&self) -> Result<Start<OnMatrices>, Error> {
         Ok((OnMatrices::new(self.flow.clone(), MatrixAction::Conjugation), self.start.clone()))
+    }
+    fn check_state(&self, arg: &str, p: &Mat<f64>) -> Result<(), Error> {
+        check_symmetric(arg, p)?;
+        let distance = format!("the distance of {arg}² from {arg}");
+        check_number(distance, defect(p), 0.0, 1.0, "that of a projector")?;
+        let (dimension, of) = (self.dimension as f64, "the dimension of the subspace");
+        check_number(format!("the trace of {arg}"), trace(p), dimension, 1.0, of)
     }
     fn modelled(&self) -> String {
         let n = self.start.nrows();

@@ -72,11 +72,12 @@ pub(crate) trait System: Clone + Debug + Send + Sync + 'static {
     fn axes_of_points(&self) -> Option<(Matrix3<f64>, Turned<Self>)> {
         None
     }
-    /// Checks a state that a run starts from in place of its own, beyond what the group and the action ask for.
+    /// Checks a state that a run goes on from in place of its own, which is called `arg`: is it on M, to 1e-6 of its size?
+    /// What the group and the action refuse is left to them. Its numbers are finite.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`], about `y0`.
-    fn check_state(&self, _y: &PointOf<Self>) -> Result<(), Error> {
+    /// Mostly [`Error::OutOfRange`], with the number that is not as it is on M.
+    fn check_state(&self, _arg: &str, _y: &PointOf<Self>) -> Result<(), Error> {
         Ok(())
     }
     /// y at the end of a span, where it is known.
@@ -127,10 +128,11 @@ fn numbers<S: System>(system: &S, y: &PointOf<S>) -> Vec<f64> {
     numbers_of(&mut y)
 }
 
-/// y ← the point of these [`numbers`], which are called `arg`.
+/// y ← the point of these [`numbers`], which are called `arg`: a start, what an event makes of the state, or what the caller of
+/// a run sets.
 ///
 /// # Errors
-/// [`Error::Length`] for another number of them.
+/// [`Error::Length`] for another number of them, and [`System::check_state`].
 fn set_point<S: System>(
     system: &S,
     y: &mut PointOf<S>,
@@ -141,7 +143,11 @@ fn set_point<S: System>(
     if let Some((axes, turned)) = system.axes_of_points() {
         *y = turned(system, y, &axes.transpose());
     }
-    Ok(())
+    // A run refuses other numbers.
+    match numbers.iter().all(|x| x.is_finite()) {
+        true => system.check_state(arg, y),
+        false => Ok(()),
+    }
 }
 
 /// A problem that is set up, with its start.
@@ -202,7 +208,6 @@ impl<S: System> On<S> {
         let mut y = self.ready()?.1.clone();
         if let Some(numbers) = numbers {
             set_point(&self.system, &mut y, "y0", numbers)?;
-            self.system.check_state(&y)?;
         }
         Ok(y)
     }

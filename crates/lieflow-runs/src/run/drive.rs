@@ -89,6 +89,8 @@ pub(super) fn drive_by<P: Runnable>(
     let Plan { steps, save, times_by_steps, stops, .. } = plan;
     let Plan { events, max_steps, cancel, checkpoints, resume, curve, .. } = plan;
     let (watcher, numbers) = (RefCell::new(watcher), RefCell::new(Vec::new()));
+    // Why the numbers that an event has set are no point.
+    let refused = RefCell::new(None);
     let mut branches = Branches::new(schema, steps.t_span());
     let resume = resume.map(|bytes| branches.take_from(bytes));
     if curve.is_some() {
@@ -144,6 +146,7 @@ pub(super) fn drive_by<P: Runnable>(
     for (index, event) in events.into_iter().enumerate() {
         let EventPlan { name, value, direction, stop_after, points, change, .. } = event;
         let (watcher, branches, changes) = (&watcher, &branches, change.is_some());
+        let refused = &refused;
         let mut event = Event::new(name, move |t, y: &PointOf<P>| {
             fill(t, y);
             value(t, schema.row(&numbers.borrow()))
@@ -166,9 +169,14 @@ pub(super) fn drive_by<P: Runnable>(
         if let Some(mut change) = change {
             event = event.change(move |t, y| {
                 let mut numbers = all.numbers_of(t, y);
+                // A run may have left M, by the errors of its steps.
+                let was_on_m = (all.point)(&numbers, y).is_ok();
                 change(t, &mut numbers);
-                if (all.point)(&numbers, y).is_err() {
+                if let Err(error) = (all.point)(&numbers, y)
+                    && was_on_m
+                {
                     // No point: the run ends with it.
+                    refused.replace(Some(error));
                     y.each_number(&mut |x| *x = f64::NAN);
                 }
             });
@@ -203,6 +211,10 @@ pub(super) fn drive_by<P: Runnable>(
         let (state, row) = (all.numbers_of(end.t, &end.y), numbers.borrow());
         watcher.borrow_mut().end(end.t, &state, schema.row(&row), &end.stats);
     }
+    let done = done.map_err(|stopped| match (RunError::from(stopped), refused.take()) {
+        (RunError::Changed { by, t, .. }, Some(source)) => RunError::Changed { by, t, source },
+        (error, _) => error,
+    });
     let Solution { t, y, status, stats, .. } = done?;
     Ok(Outcome { t, status, stats, state: all.numbers_of(t, &y), row: numbers.take() })
 }

@@ -59,6 +59,9 @@ impl System for WithGroup {
         let system = Euler::new(group.clone(), energy.clone()).with_group();
         Ok((FromBody::new(system, FromTheBody), (group.identity(), momentum.clone())))
     }
+    fn check_state(&self, _: &str, (_, m): &Point) -> Result<(), Error> {
+        self.0.check_momentum(m)
+    }
     fn modelled(&self) -> String {
         format!("{} and g in {}", self.0.modelled(), self.0.group.name())
     }

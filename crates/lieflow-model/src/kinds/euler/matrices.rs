@@ -12,6 +12,7 @@ use super::group::WithGroup;
 use crate::formula::{Formula, Text};
 use crate::kinds::algebra::{Algebra, Miss, Named, miss};
 use crate::kinds::entries::{antisymmetric, numbered, rows, size_of_traces, square, traces};
+use crate::kinds::on_m::OFF_M;
 use crate::kinds::prelude::*;
 use crate::problem::{FormulaKeys, SampleKeys, row_columns};
 use crate::reader::values::Numbers;
@@ -188,6 +189,23 @@ impl DiscreteGradient<MatrixGroup> for Projected {
     }
 }
 
+impl EulerEquation {
+    /// Is the momentum of a state in the algebra?
+    ///
+    /// # Errors
+    /// [`Error::NotInAlgebra`] and [`Error::Trace`], about `y`.
+    pub(super) fn check_momentum(&self, m: &Mat<f64>) -> Result<(), Error> {
+        let arg = "y";
+        self.group.algebra_within(m.clone(), OFF_M).map(drop).map_err(|error| match error {
+            Error::NotInAlgebra { group, residual, tolerance, .. } => {
+                Error::NotInAlgebra { arg, group, residual, tolerance }
+            }
+            Error::Trace { group, distance, .. } => Error::Trace { arg, group, distance },
+            other => other,
+        })
+    }
+}
+
 impl Dual for EulerEquation {
     type Momentum = Mat<f64>;
 
@@ -250,6 +268,9 @@ impl System for EulerEquation {
             Form::Weights(_) => None,
             Form::Formula(energy) => Some(energy.formula()),
         }
+    }
+    fn check_state(&self, _: &str, m: &Mat<f64>) -> Result<(), Error> {
+        self.check_momentum(m)
     }
     fn modelled(&self) -> String {
         format!("momentum on {}*", self.energy.algebra.name(self.momentum.nrows()))

@@ -13,6 +13,7 @@ use super::{ACTIONS, NAMED_MAX, entry_names, letters};
 use crate::formula::{Formula, without_value};
 use crate::kinds::algebra::{Algebra, Miss, miss};
 use crate::kinds::entries::{numbered, size_of_traces, traces, upper, upper_columns};
+use crate::kinds::on_m::{check_complex, check_symmetric};
 use crate::kinds::prelude::*;
 
 /// The equation with its initial point.
@@ -35,16 +36,6 @@ pub(super) struct Equation {
 
 /// The distance from the algebra that f may have at the points where it is checked, relative to its size.
 const IN_THE_ALGEBRA: f64 = 1e-8;
-
-/// The real matrix \[X −Y; Y X\] of X + iY, from \[X; Y\].
-pub(super) fn whole(x: &Mat<f64>) -> Mat<f64> {
-    let n = x.ncols();
-    Mat::from_fn(2 * n, 2 * n, |i, j| match j < n {
-        true => x[(i, j)],
-        false if i < n => -x[(n + i, j - n)],
-        false => x[(i - n, j - n)],
-    })
-}
 
 impl Equation {
     /// n, of the field of n×n formulas.
@@ -274,6 +265,15 @@ impl System for Equation {
     }
     fn formula(&self) -> Option<&Formula> {
         self.formulas().next()
+    }
+    fn check_state(&self, arg: &str, y: &Mat<f64>) -> Result<(), Error> {
+        match self.action {
+            MatrixAction::Lagrangian => check_symmetric(arg, y),
+            MatrixAction::Conjugation | MatrixAction::Coadjoint if self.algebra.is_complex() => {
+                check_complex(arg, y)
+            }
+            _ => Ok(()),
+        }
     }
     fn notes(&self) -> Vec<String> {
         self.notes.clone()

@@ -21,10 +21,10 @@ use lieflow::dense::largest_entry;
 use lieflow::groups::{GroupMatrix, LieAlgebra, LieGroup, MatrixGroup};
 use lieflow_runs::spaces::MatrixAction;
 
-use self::equation::{Equation, whole};
+use self::equation::Equation;
 use super::algebra::{ALGEBRAS, Algebra};
 use super::body::TYPED;
-use super::entries::{above_diagonal, check_rows, check_symmetric, side_of};
+use super::entries::{above_diagonal, check_rows, check_symmetric, side_of, whole};
 use super::prelude::*;
 use crate::formula::{Formula, Names, Text, Texts};
 use crate::problem::row_columns;
@@ -237,7 +237,7 @@ fn start(
             true => start[(i, j)],
             false => imaginary[(i - rows, j)],
         });
-        start = if action == MatrixAction::Linear { both } else { whole(&both) };
+        start = if action == MatrixAction::Linear { both } else { whole(both.as_ref()) };
     }
     if action == MatrixAction::Lagrangian {
         check_symmetric("start", &start, 0.0)?;

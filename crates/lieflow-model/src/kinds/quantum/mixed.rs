@@ -2,12 +2,12 @@
 //! see [`von_neumann`].
 
 use lieflow::dense::{norm, squared_norm};
-use lieflow::groups::MEMBERSHIP;
 use lieflow::problems::{density_matrix, populations_of, von_neumann};
 use lieflow::solve::Stops;
 use lieflow_runs::spaces::{MatrixAction, OnMatrices};
 
 use super::super::entries::{ROUNDING, eigenvalues, numbered, symmetric, upper_columns};
+use super::super::on_m::{OFF_M, check_hermitian, check_least, check_number};
 use super::super::prelude::*;
 use super::{Hamiltonian, INSTEAD, above_diagonal, hamiltonian_keys, imaginary_part, state};
 use crate::formula::Formula;
@@ -75,6 +75,11 @@ fn start(n: &Key<usize>, keys: Keys) -> Result<Mat<f64>, ReadError> {
     Ok(rho.map_err(|error| Refusal::from(error).about("density"))?)
 }
 
+/// tr ρ.
+fn trace(rho: &Mat<f64>) -> f64 {
+    populations_of(rho).iter().sum()
+}
+
 impl System for Mixture {
     type Problem = OnMatrices;
 
@@ -105,7 +110,7 @@ impl System for Mixture {
             },
         )
         .with_columns(|mixture| numbered("p", mixture.hamiltonian.n)),
-        Q::number("trace", "sum of the populations", |_, _, rho| populations_of(rho).iter().sum())
+        Q::number("trace", "sum of the populations", |_, _, rho| trace(rho))
             .kept(Law::by_the_action(0)),
         Q::number("purity", "tr ρ²: 1 for a pure state, 1/n at least", |_, _, rho| {
             0.5 * squared_norm(rho.as_ref())
@@ -137,16 +142,12 @@ impl System for Mixture {
     fn formula(&self) -> Option<&Formula> {
         self.hamiltonian.formula()
     }
-    fn check_state(&self, rho: &Mat<f64>) -> Result<(), Error> {
-        let trace: f64 = populations_of(rho).iter().sum();
-        match (trace - 1.0).abs() <= MEMBERSHIP {
-            true => Ok(()),
-            false => Err(Error::OutOfRange {
-                arg: "the trace of y0".into(),
-                value: trace,
-                expected: "1, that of a density matrix".into(),
-            }),
-        }
+    fn check_state(&self, arg: &str, rho: &Mat<f64>) -> Result<(), Error> {
+        check_hermitian(arg, rho)?;
+        let of = "that of a density matrix";
+        check_number(format!("the trace of {arg}"), trace(rho), 1.0, 1.0, of)?;
+        let least = eigenvalues(rho)[0];
+        check_least(least >= -OFF_M, format!("the least eigenvalue of {arg}"), least, "at least 0")
     }
     fn modelled(&self) -> String {
         format!("density matrix of {} levels, real and imaginary parts", self.hamiltonian.n)

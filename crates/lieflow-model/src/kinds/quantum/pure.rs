@@ -2,12 +2,12 @@
 //! [`schrodinger`](fn@schrodinger).
 
 use lieflow::dense::squared_norm;
-use lieflow::groups::MEMBERSHIP;
 use lieflow::problems::{populations, schrodinger};
 use lieflow::solve::Stops;
 use lieflow_runs::spaces::{MatrixAction, OnMatrices};
 
 use super::super::entries::numbered;
+use super::super::on_m::check_number;
 use super::super::prelude::*;
 use super::{Hamiltonian, INSTEAD, hamiltonian_keys, state};
 use crate::formula::Formula;
@@ -84,16 +84,9 @@ impl System for Levels {
     fn formula(&self) -> Option<&Formula> {
         self.hamiltonian.formula()
     }
-    fn check_state(&self, psi: &Mat<f64>) -> Result<(), Error> {
+    fn check_state(&self, arg: &str, psi: &Mat<f64>) -> Result<(), Error> {
         let length = squared_norm(psi.as_ref()).sqrt();
-        match (length - 1.0).abs() <= MEMBERSHIP {
-            true => Ok(()),
-            false => Err(Error::OutOfRange {
-                arg: "|y0|".into(),
-                value: length,
-                expected: "1, the length of a state".into(),
-            }),
-        }
+        check_number(format!("|{arg}|"), length, 1.0, 1.0, "the length of a state")
     }
     fn modelled(&self) -> String {
         format!("state of {} levels, real and imaginary parts", self.hamiltonian.n)

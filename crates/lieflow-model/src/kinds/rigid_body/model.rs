@@ -11,7 +11,7 @@
 
 use core::fmt::Debug;
 
-use lieflow::groups::{GroupMatrix, LieGroup, UnitQuaternions, hat, vee};
+use lieflow::groups::{GroupMatrix, LieGroup, So3, UnitQuaternions, hat, vee};
 use lieflow::problems::{
     BodyState, RigidBody, RigidBodyAttitude, RigidBodyN, RigidBodyNAttitude, RigidBodyQuaternion,
     RigidBodyState,
@@ -20,6 +20,7 @@ use lieflow::scalar::Counted;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 use crate::kinds::body::*;
+use crate::kinds::on_m::{OFF_M, check_antisymmetric};
 use crate::kinds::prelude::*;
 use crate::problem::{PointOf, Runnable, SERIES, Turned};
 
@@ -51,6 +52,10 @@ pub(super) trait BodyCoordinates: Clone + Debug + Send + Sync + 'static {
     fn point(pose: &Pose) -> Point<Self>;
     /// The pose of a point.
     fn pose(problem: &Self::Problem, y: &Point<Self>) -> Pose;
+    /// See [`System::check_state`].
+    fn check_state(_arg: &str, _y: &Point<Self>) -> Result<(), Error> {
+        Ok(())
+    }
     /// See [`System::counted`].
     fn counted(_spec: &RigidBodySpec, _start: Point<Self>) -> Option<Counting> {
         None
@@ -142,6 +147,10 @@ impl BodyCoordinates for State {
     fn pose(_: &RigidBodyState, y: &BodyState) -> Pose {
         Pose { m: y.m, orientation: Orientation::Matrix(y.g) }
     }
+    /// Any twelve numbers are on M = ℝ¹².
+    fn check_state(_: &str, y: &BodyState) -> Result<(), Error> {
+        So3::new().check_element("y", &y.g, OFF_M)
+    }
 }
 
 /// q; the momentum in space is constant.
@@ -186,6 +195,9 @@ impl BodyCoordinates for MomentumMatrix {
     }
     fn pose(_: &RigidBodyN, m: &Mat<f64>) -> Pose {
         Pose { m: vee(&to_nalgebra(m)), orientation: Orientation::NotModelled }
+    }
+    fn check_state(arg: &str, m: &Mat<f64>) -> Result<(), Error> {
+        check_antisymmetric(arg, m)
     }
 }
 
@@ -320,6 +332,9 @@ impl<R: BodyCoordinates> System for Body<R> {
     }
     fn counted(&self) -> Option<Counting> {
         R::counted(&self.spec, self.problem().ok()?.1)
+    }
+    fn check_state(&self, arg: &str, y: &PointOf<Self>) -> Result<(), Error> {
+        R::check_state(arg, y)
     }
     fn modelled(&self) -> String {
         R::MODELLED.into()
