@@ -6,6 +6,7 @@ use super::Finding;
 use crate::error::Error;
 use crate::groups::Sample;
 use crate::maps::CoordinateMap;
+use crate::space::Metric;
 
 /// The allowed error of a law, in units of ε·size. The size is stated where it is measured.
 pub const LAW_BOUND: f64 = 4.0;
@@ -23,7 +24,10 @@ const SMALL: f64 = 1.0 / 131072.0;
 /// - Ψ(0) = 𝟙, Ψ(u) ∈ G;
 /// - commutators: Ψ(δu)Ψ(δv) = Ψ(δ²\[u, v\])Ψ(δv)Ψ(δu) to second order in δ. So the bracket is that
 ///   of the group, in each part of it;
-/// - dΨ⁻¹: Ψ(u + δ dΨ_u⁻¹v) = Ψ(δv)Ψ(u) to first order in δ, the definition of dΨ (8).
+/// - dΨ⁻¹: Ψ(u + δ dΨ_u⁻¹v) = Ψ(δv)Ψ(u) to first order in δ, the definition of dΨ (8);
+/// - action: (Ψ(u)Ψ(v))x = Ψ(u)(Ψ(v)x) for a vector x;
+/// - tangents: Ψ(δv)g and Ψ(δw)g are δ‖vg − wg‖ apart to first order in δ, for g = Ψ(u), and so are Ψ(δv)x and Ψ(δw)x. A
+///   tangent of the wrong sign is not seen, since this compares lengths.
 ///
 /// # Errors
 /// [`Error::Unsupported`] when the map has no formula on the group; a map's refusal of a random u.
@@ -45,6 +49,8 @@ where
     let mut closure = Finding::new(named("Ψ(u) ∈ G"), LAW_BOUND);
     let mut commutators = Finding::new(named("[u, v] of commutators"), LAW_BOUND);
     let mut inverse = Finding::new(named("dΨ⁻¹"), LAW_BOUND);
+    let mut action = Finding::new(named("(gh)x = g(hx)"), LAW_BOUND);
+    let mut tangents = Finding::new(named("v·g and v·x"), LAW_BOUND);
 
     let n = (group.dim() as f64).sqrt().max(1.0);
     let sum = |a: f64, x: &G::Alg, b: f64, y: &G::Alg| {
@@ -93,6 +99,36 @@ where
         let speed = (group.norm(&k) + group.norm(&v)).powi(2);
         let second_order = size_of(&g) * speed * (1.0 + group.norm(&u)).powi(2);
         inverse.see(gap, second_order + n * size_of(&g), 1.0, place);
+
+        let x = group.sample_vector(rng);
+        let apply = |g: &G::Elem, x: &G::Vector| {
+            let mut out = x.clone();
+            group.apply(g, x, &mut out);
+            out
+        };
+        let h = psi.eval(group, &v)?;
+        let (both, one_by_one) = (apply(&product(&g, &h), &x), apply(&g, &apply(&h, &x)));
+        let size = (1.0 + x.size()) * size_of(&g) * size_of(&h);
+        action.see(both.distance(&one_by_one), n * size, 1.0, place);
+
+        let (near, other) = (scaled(DELTA, &v)?, scaled(DELTA, &w)?);
+        let tangent = |v: &G::Alg| {
+            let mut out = group.identity();
+            group.tangent(v, &g, &mut out);
+            out
+        };
+        let generated = |v: &G::Alg| {
+            let mut out = x.clone();
+            group.apply_algebra(v, &x, &mut out);
+            out
+        };
+        let lengths = 1.0 + (group.norm(&v) + group.norm(&w)).powi(2);
+        let of_g = DELTA * tangent(&v).distance(&tangent(&w));
+        let gap = (product(&near, &g).distance(&product(&other, &g)) - of_g).abs();
+        tangents.see(gap, n * lengths * size_of(&g), 1.0, place);
+        let of_x = DELTA * generated(&v).distance(&generated(&w));
+        let gap = (apply(&near, &x).distance(&apply(&other, &x)) - of_x).abs();
+        tangents.see(gap, n * lengths * (1.0 + x.size()), 1.0, place);
     }
-    Ok(vec![bracket, identity, closure, commutators, inverse])
+    Ok(vec![bracket, identity, closure, commutators, inverse, action, tangents])
 }

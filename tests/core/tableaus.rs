@@ -4,7 +4,7 @@ use crate::support::orders::{order_conditions, row_conditions};
 use lieflow::catalog::TABLEAUS;
 use lieflow::maps::Exp;
 use lieflow::methods::low_storage::TwoN;
-use lieflow::methods::tableau::{Tableau, order_defects};
+use lieflow::methods::tableau::{Dense, ErrorEstimate, Tableau, order_defects};
 use lieflow::methods::{Rk, Rkmk, tableau};
 use lieflow::{Error, Method, Solve};
 
@@ -79,6 +79,8 @@ fn a_wrong_tableau_is_refused() {
     let rk4 = tableau::RK4;
     let (mut c, mut implicit, mut nan) = (rk4, rk4, rk4);
     (c.c[2], implicit.a[1][1], nan.b[0]) = (0.4, 0.1, f64::NAN);
+    let end = |end| Tableau { dense: Dense::Cubic { order: 2, end }, ..rk4 };
+    let error = |order, e| Tableau { error: Some(ErrorEstimate { order, e, damp: None }), ..rk4 };
     for (wrong, says) in [
         (
             Tableau { b: [0.5, 0.5, 0.25, 0.25], ..rk4 },
@@ -88,13 +90,28 @@ fn a_wrong_tableau_is_refused() {
         (c, "c[3] of the tableau `rk4` = 0.4, expected"),
         (implicit, "a[2,2] of the tableau `rk4` = 0.1, expected 0"),
         (nan, "Σ b[j] of the tableau `rk4` = NaN, expected 1"),
+        (end(&[0.0, 0.0, 0.0, 0.5]), "Σ dense.end[j] of the tableau `rk4` = 0.5, expected 1"),
+        (
+            end(&[0.0, 0.0, 0.0, 0.0, 1.0]),
+            "dense.end of the tableau `rk4` = 5, expected at most 4 weights",
+        ),
+        (error(3, [0.5, 0.0, 0.0, 0.0]), "Σ error.e[j] of the tableau `rk4` = 0.5, expected 0"),
+        (
+            error(3, [0.0; 4]),
+            "error.e of the tableau `rk4` = 0, expected weights that are not all 0",
+        ),
+        (
+            error(2, [0.5, -0.5, 0.0, 0.0]),
+            "error.order of the tableau `rk4` = 2, expected at most 1",
+        ),
     ] {
         let error = wrong.check().unwrap_err();
         assert!(matches!(error, Error::OutOfRange { .. }));
         assert!(error.to_string().contains(says), "{error}");
         let body = lieflow::problems::RigidBody::<f64>::new([1.0, 2.0, 3.0]).unwrap();
         let refused = Rk(wrong).work(&body, &nalgebra::Vector3::x()).err();
-        let is_seen = cfg!(debug_assertions) || !says.starts_with("order");
+        let of_order = says.starts_with("order") || says.starts_with("error.order");
+        let is_seen = cfg!(debug_assertions) || !of_order;
         assert_eq!(refused.map(|e| e.to_string()), is_seen.then(|| error.to_string()), "{says}");
         let on_group = Solve::new(&body, &Rkmk::new(wrong, Exp), [0.0, 1.0])
             .dt(0.5)

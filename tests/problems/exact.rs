@@ -122,3 +122,21 @@ fn moments_that_nearly_agree() {
         }
     }
 }
+
+/// Numbers that leave the range of f64 are an error and no NaN.
+#[test]
+fn motions_out_of_range_are_refused() {
+    for (inertia, m, t) in [
+        ([1e-200, 1e200, 1e200], [1.0, 1.0, 1.0], 1.0),
+        ([1.0, 2.0, 3.0], [1e308, 1.7e308, 1.7e308], 1e-300),
+        ([1e-160, 1.0, 1.0], [1e160, 1.0, 1.0], 1.0),
+    ] {
+        let Ok(motion) = Exact::new(inertia, m, Matrix3::identity()) else { continue };
+        let is_finite = |m: &Vector3<f64>| m.iter().all(|x| x.is_finite());
+        assert!(motion.momentum_body(t).as_ref().map_or(true, is_finite), "{inertia:?}");
+        let state = motion.state(t);
+        let numbers =
+            |(m, g): &(Vector3<f64>, Matrix3<f64>)| is_finite(m) && g.iter().all(|x| x.is_finite());
+        assert!(state.as_ref().map_or(true, numbers), "{inertia:?}: {state:?}");
+    }
+}

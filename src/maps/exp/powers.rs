@@ -21,6 +21,9 @@ pub enum Dexpinv {
     Eigen,
 }
 
+/// The last k with a coefficient B_k/k! of the Baker series that is not 0 in f64, rounded up.
+pub(super) const COEFFICIENTS: usize = 410;
+
 /// The longest series that is summed before it counts as divergent: at half the radius of
 /// convergence its remainder is below rounding.
 const SERIES_MAX: usize = 52;
@@ -75,7 +78,8 @@ impl<A: Clone> Powers<A> {
     ) -> Result<Dexpinv, StepError> {
         let negligible = 0.25 * f64::EPSILON * group.norm(v);
         let mut choice = Dexpinv::Series(0);
-        for k in 1..=q.unwrap_or(SERIES_MAX) {
+        // Beyond it the coefficients are 0 in f64.
+        for k in 1..=q.map_or(SERIES_MAX, |q| q.min(COEFFICIENTS)) {
             self.advance(group, u);
             if k > 1 && k % 2 == 1 {
                 continue; // B_k = 0

@@ -2,8 +2,8 @@
 //!
 //! Source: J. C. Butcher; Hairer, Nørsett, Wanner I, II.2.
 
-use super::Tableau;
 use super::trees::trees;
+use super::{Dense, ErrorEstimate, Tableau};
 use crate::error::Error;
 
 /// How far weights b with stages a are from the order conditions: the worst |Σ b_i Φ_i(τ) − 1/γ(τ)| over the trees with
@@ -40,7 +40,8 @@ pub fn order_of<const S: usize>(max: usize, a: &[[f64; S]; S], b: &[f64; S]) -> 
 }
 
 impl<const S: usize> Tableau<S> {
-    /// Checks that the tableau is explicit, that c_i = Σ_j a_ij and Σ_j b_j = 1, and that it has the order that it states.
+    /// Checks that the tableau is explicit, that c_i = Σ_j a_ij and Σ_j b_j = 1, that it has the order that it states, and that
+    /// the weights of its error estimate and of its dense output fit.
     ///
     /// A build of lieflow with `debug-assertions` checks every tableau before a run. Another build leaves the order out:
     /// a release, or a profile that switches `debug-assertions` off for dependencies.
@@ -59,6 +60,20 @@ impl<const S: usize> Tableau<S> {
             held if held < self.order => {
                 let expected = format!("at most {held}: a condition of order {} fails", held + 1);
                 Err(Error::out_of_range(self.named("order"), self.order as f64, expected))
+            }
+            _ => self.check_estimate_order(),
+        }
+    }
+
+    /// Checks that b̂ = b − e has the order that the estimate states. A damped estimate has two rows, and an order of both.
+    fn check_estimate_order(&self) -> Result<(), Error> {
+        let Some(ErrorEstimate { order, e, damp: None }) = self.error else { return Ok(()) };
+        let b_hat: [f64; S] = core::array::from_fn(|j| self.b[j] - e[j]);
+        match order_of(order, &self.a, &b_hat) {
+            held if held < order => {
+                let expected =
+                    format!("at most {held}: b − e fails a condition of order {}", held + 1);
+                Err(Error::out_of_range(self.named("error.order"), order as f64, expected))
             }
             _ => Ok(()),
         }
@@ -84,10 +99,35 @@ impl<const S: usize> Tableau<S> {
                 return Err(Error::out_of_range(entry, self.c[i], expected));
             }
         }
-        match differs(&self.b, 1.0) {
-            Some(sum) => Err(Error::out_of_range(self.named("Σ b[j]"), sum, "1")),
-            None => Ok(()),
+        if let Some(sum) = differs(&self.b, 1.0) {
+            return Err(Error::out_of_range(self.named("Σ b[j]"), sum, "1"));
         }
+        if let Some(ErrorEstimate { e, damp, .. }) = &self.error {
+            for (row, name) in [(Some(e), "error.e"), (damp.as_ref(), "error.damp")] {
+                let Some(row) = row else { continue };
+                if let Some(sum) = differs(row, 0.0) {
+                    return Err(Error::out_of_range(self.named(&format!("Σ {name}[j]")), sum, "0"));
+                }
+                if row.iter().all(|x| *x == 0.0) {
+                    let expected = "weights that are not all 0: each step would have no error";
+                    return Err(Error::out_of_range(self.named(name), 0.0, expected));
+                }
+            }
+        }
+        if let Dense::Cubic { end, .. } = self.dense {
+            if end.len() > S {
+                let expected = format!("at most {S} weights, one for each stage");
+                return Err(Error::out_of_range(
+                    self.named("dense.end"),
+                    end.len() as f64,
+                    expected,
+                ));
+            }
+            if let Some(sum) = differs(end, 1.0) {
+                return Err(Error::out_of_range(self.named("Σ dense.end[j]"), sum, "1"));
+            }
+        }
+        Ok(())
     }
 
     fn named(&self, entry: &str) -> String {

@@ -7,9 +7,10 @@
 //! | [`DOPRI5`] | 5(4) | 6 | 7 | Dormand, Prince 1980; the same, p. 178 |
 //! | [`VERNER6`] | 6(5) | 8 | 8 | Verner 1978; the same, p. 181 |
 //!
-//! The last stage of BS3 and DOPRI5 is f at the end of the step ("first same as last"). Only the error estimate and
-//! dense output use it. On a manifold the next step has another chart, so no stage serves two steps: a step depends only on
-//! its arguments.
+//! The last stage of BS3 and DOPRI5 is f at the end of the step ("first same as last"). The step itself does not use it, but
+//! the error estimate and dense output do. In steps by error [`Rk`](crate::methods::Rk) takes it as the first stage of the next
+//! step, if that begins at the same t and y. [`Rkmk`](crate::methods::Rkmk) evaluates f again. The result of a step depends only
+//! on its arguments.
 
 use super::{Dense, ErrorEstimate, Row, Tableau, lower};
 

@@ -25,7 +25,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::theta::Theta;
 use super::{check_finite, check_inertia};
 use crate::elliptic::{Ladder, rc, rf, rj};
-use crate::error::Error;
+use crate::error::{Error, StepError};
 use crate::groups::So3;
 use crate::maps::{CoordinateMap, Exp};
 use crate::scalar::Trig;
@@ -144,31 +144,42 @@ impl Exact {
     /// The body momentum m(t).
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] for a time that is not finite.
+    /// [`Error::OutOfRange`] for a time that is not finite; [`Error::Map`] where a number leaves the range of `f64`.
     pub fn momentum_body(&self, t: f64) -> Result<Vector3<f64>, Error> {
         check_finite("t", &[t])?;
-        Ok(match &self.motion {
-            Orbit::Elliptic(motion) if t != 0.0 => motion.momentum(t),
-            _ => self.m0,
-        })
+        match &self.motion {
+            Orbit::Elliptic(motion) if t != 0.0 => finite(motion.momentum(t)),
+            _ => Ok(self.m0),
+        }
     }
 
     /// The body momentum m(t), and the attitude g(t) from body to space.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] for a time that is not finite.
+    /// As [`momentum_body`](Self::momentum_body).
     pub fn state(&self, t: f64) -> Result<(Vector3<f64>, Matrix3<f64>), Error> {
         check_finite("t", &[t])?;
         if t == 0.0 {
             return Ok((self.m0, self.g0));
         }
         match &self.motion {
-            Orbit::Elliptic(motion) => motion.state(t),
+            Orbit::Elliptic(motion) => {
+                let (m, g) = motion.state(t)?;
+                Ok((finite(m)?, g))
+            }
             Orbit::Steady => {
                 let angle = Vector3::from_fn(|i, _| self.m0[i] / self.inertia[i] * t);
                 Ok((self.m0, self.g0 * Exp.eval(&So3::new(), &angle)?))
             }
         }
+    }
+}
+
+/// m, if its numbers are finite.
+fn finite(m: Vector3<f64>) -> Result<Vector3<f64>, Error> {
+    match m.iter().all(|x| x.is_finite()) {
+        true => Ok(m),
+        false => Err(StepError::NotFinite { what: "the exact motion" }.into()),
     }
 }
 
