@@ -33,6 +33,13 @@ pub(crate) fn refused(py: Python<'_>, name: &str, error: &Error) -> PyErr {
     argument(py, &of, value, expected)
 }
 
+/// The exception of a state that was set: its name is y, not that of a start.
+pub(crate) fn of_state(py: Python<'_>, error: &Error) -> PyErr {
+    let (of, value, expected) = words("y", error);
+    let of = of.strip_prefix("y0").map_or(of.clone(), |place| format!("y{place}"));
+    argument(py, &of, value, expected)
+}
+
 /// The argument that an error of the library is about, its value and what was expected. `name` is that of an argument
 /// where the error has none.
 pub(crate) fn words(name: &str, error: &Error) -> (String, String, String) {

@@ -43,6 +43,8 @@ fn _lieflow(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(solve::solve, m)?)?;
     m.add_function(wrap_pyfunction!(solve::check_method, m)?)?;
     m.add_function(wrap_pyfunction!(solve::time_to_search, m)?)?;
+    m.add_function(wrap_pyfunction!(solve::other_tolerance, m)?)?;
+    m.add("LAST_DIGITS", lieflow_model::problem::LAST_DIGITS)?;
     m.add("SHORT_STEPS", lieflow_model::problem::SHORT_STEPS)?;
     m.add("__version__", env!("CARGO_PKG_VERSION"))
 }

@@ -1,6 +1,5 @@
 //! What all runs share: the steps, what watches, and what a run did.
 
-use std::sync::atomic::Ordering;
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
@@ -115,7 +114,7 @@ impl Settings {
         start: impl FnOnce() -> Vec<f64>,
     ) -> Result<Steps, lieflow::Error> {
         let dt = self.dt.map(|dt| TimeGrid::new(t_span, dt));
-        let grid = dt.or_else(|| self.steps.map(|steps| TimeGrid::with_steps(t_span, steps)));
+        let grid = dt.or_else(|| self.steps.map(|steps| of_steps(t_span, steps)));
         if let Some(grid) = grid.transpose()? {
             return Ok(Steps::Equal(if self.split { grid.split() } else { grid }));
         }
@@ -136,6 +135,18 @@ impl Settings {
         }
         Ok(Steps::ByError { t_span, control })
     }
+}
+
+/// The grid of so many steps. Too many of them are a mistake of `steps`, not of the size that follows.
+fn of_steps(t_span: [f64; 2], steps: u64) -> Result<TimeGrid, lieflow::Error> {
+    TimeGrid::with_steps(t_span, steps).map_err(|error| match error {
+        lieflow::Error::OutOfRange { arg, .. } if arg == "dt" => lieflow::Error::OutOfRange {
+            arg: "steps".into(),
+            value: steps as f64,
+            expected: "so few that t + h differs from t".into(),
+        },
+        error => error,
+    })
 }
 
 /// The rows of the output.
@@ -248,7 +259,6 @@ struct End {
 pub(crate) struct Seen {
     rows: Rows,
     pub(crate) found: Vec<Rows>,
-    ended_by_callback: bool,
     end: Option<End>,
     last: Option<Instant>,
 }
@@ -303,15 +313,11 @@ impl Watch {
 }
 
 impl Seen {
-    /// Sees a row of the output.
-    pub(crate) fn row(&mut self, callback: Option<&Callable>, raised: &Raised, t: f64, y: &[f64]) {
+    /// Sees a row of the output. The run stops at the row where the callback says so.
+    pub(crate) fn row(&mut self, callback: Option<&Callable>, t: f64, y: &[f64]) -> Next {
         self.rows.push(t, y);
-        if let Some(callback) = callback
-            && callback.call(t, y, |value| value.is_truthy()) == Some(true)
-        {
-            self.ended_by_callback = true;
-            raised.stop.store(true, Ordering::Relaxed);
-        }
+        let is_last = |f: &Callable| f.call(t, y, |value| value.is_truthy()) == Some(true);
+        if callback.is_some_and(is_last) { Next::Stop } else { Next::Continue }
     }
 
     /// Asks for signals now and then.
@@ -347,7 +353,7 @@ impl Seen {
         let (code, message) = match &status {
             Ok(Status::Finished) => (0, "The end of the span was reached.".to_owned()),
             Ok(Status::Event(name)) => (1, format!("The event {name} ended the run.")),
-            Ok(_) if self.ended_by_callback => (1, "The callback ended the run.".to_owned()),
+            Ok(Status::Observer) => (1, "The callback ended the run.".to_owned()),
             Ok(status) => (-1, format!("The run was ended: {status:?}.")),
             Err(error) => (-1, error.to_string()),
         };
@@ -365,6 +371,7 @@ impl Seen {
         result.set_item("y_events", y_events)?;
         result.set_item("status", code)?;
         result.set_item("message", message)?;
+        result.set_item("_by_callback", matches!(status, Ok(Status::Observer)))?;
         result.set_item("t_end", t_end)?;
         result.set_item("y_end", field::array(py, shape, &y_end)?)?;
         result.set_item("state", PyArray1::from_vec(py, state))?;
@@ -401,8 +408,7 @@ pub(crate) struct Watching<'a> {
 
 impl Watcher for Watching<'_> {
     fn row(&mut self, t: f64, row: Row<'_>) -> Next {
-        self.seen.row(self.callback, self.raised, t, row.values());
-        Next::Continue
+        self.seen.row(self.callback, t, row.values())
     }
     fn event(&mut self, event: usize, t: f64, _: bool, row: Row<'_>) {
         self.seen.found[event].push(t, row.values());

@@ -135,6 +135,12 @@ pub(crate) fn time_to_search(steps: u64, seconds: f64) -> Option<f64> {
     lieflow_model::problem::time_to_search(steps, seconds)
 }
 
+/// The tolerance of a second run in that of the first: a tenth, or ten times.
+#[pyfunction]
+pub(crate) fn other_tolerance(rtol: f64, atol: f64) -> f64 {
+    lieflow_model::problem::other_tolerance([rtol, atol])
+}
+
 /// f: a callable with its further arguments, the address of a C function with its parameters, formulas, or samples.
 #[derive(FromPyObject)]
 pub(crate) enum FieldParts {

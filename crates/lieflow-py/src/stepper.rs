@@ -11,7 +11,7 @@ use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
-use crate::error::{argument, of_run, refused};
+use crate::error::{of_run, of_state, refused};
 use crate::field::{self, Raised};
 
 /// A run that is taken step by step.
@@ -81,7 +81,6 @@ impl Stepper {
         }
         done.map_err(|error| match &error {
             RunError::Setup(error) => refused(py, "t", error),
-            RunError::Changed { .. } => argument(py, "y", error.to_string(), "a point on M"),
             error => PyRuntimeError::new_err(error.to_string()),
         })
     }
@@ -117,7 +116,11 @@ impl Stepper {
     }
     fn set_state(&self, py: Python<'_>, numbers: PyReadonlyArray1<'_, f64>) -> PyResult<()> {
         let numbers = numbers.as_slice()?;
-        self.with(py, |run| run.set_state(numbers))
+        self.with(py, |run| match run.set_state(numbers) {
+            Err(RunError::Setup(error) | RunError::Changed { source: error, .. }) => Ok(Err(error)),
+            done => done.map(Ok),
+        })?
+        .map_err(|error| of_state(py, &error))
     }
     fn step(&self, py: Python<'_>) -> PyResult<f64> {
         self.with(py, |run| run.step())

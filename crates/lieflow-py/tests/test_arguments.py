@@ -131,6 +131,53 @@ def test_the_advice_on_formulas_is_for_python():
         assert "problem." not in str(caught.value) and "line" not in str(caught.value)
 
 
+def test_advice_has_its_own_line():
+    with pytest.raises(lf.ArgumentError) as caught:
+        lf.RigidBody(inertia=[1, 2, -3], momentum=[1, 2, 3])
+    assert caught.value.expected.startswith("did you mean `momentum_body`? (expected one of inertia, ")
+    lines = str(caught.value).split("\n")
+    assert lines[:2] == ["momentum: unknown key `momentum`", f"  = {caught.value.expected}"]
+    [other] = caught.value.others
+    assert lines[2:] == [str(other)] and other.argument == "inertia[2]"
+    with pytest.raises(lf.ArgumentError) as caught:
+        lf.solve_ivp(lf.Field("SO(3)", ["log(t)", "x", "t"]), (0, 1), np.eye(3), frame="body")
+    first, [second] = caught.value, caught.value.others
+    assert "\n  = " in str(first) and str(first).endswith(str(second)) and str(second).endswith(f"\n  = {second.expected}")
+
+
+@pytest.mark.parametrize("fun", [BODY, turn])
+def test_too_many_steps_are_a_mistake_of_steps(fun):
+    y0, space = (None, {}) if fun is BODY else (np.eye(3), ROTATION)
+    with pytest.raises(lf.ArgumentError, match="expected so few that t \\+ h differs from t") as caught:
+        lf.solve_ivp(fun, (0, 1), y0, steps=10**17, **space)
+    assert caught.value.argument == "steps" and "1" in caught.value.value
+    with pytest.raises(lf.ArgumentError) as caught:
+        lf.solve_ivp(fun, (0, 1), y0, dt=1e-17, **space)
+    assert caught.value.argument == "dt"
+
+
+def test_a_change_that_leaves_se3_is_told():
+    def rest(t, y):
+        return np.zeros(6)
+
+    for wrong, words in ((2 * np.eye(4), "y[3, 3]: 2.0, expected 1"), (np.eye(4) + 0.5 * np.eye(4)[::-1], "y[3, 0]: 0.5, expected 0")):
+        event = lf.Event(lambda t, y: t - 1, change=lambda t, y, wrong=wrong: wrong, name="turn")
+        with pytest.raises(lf.ArgumentError) as caught:
+            lf.solve_ivp(rest, (0, 2), np.eye(4), group="SE(3)", frame="space", events=event)
+        text = str(caught.value)
+        assert text == f"change of events[0] (turn) at t = 1.0, {words}: the last row of [R x; 0 1] is [0, 0, 0, 1]"
+        run = lf.Integrator(rest, None, (0, 2), np.eye(4), group="SE(3)", frame="space")
+        with pytest.raises(lf.ArgumentError, match=r"^y\[3, \d\]: .*last row"):
+            run.y = wrong
+    moved = np.eye(4)
+    moved[:3, 3] = 1, 2, 3
+    event = lf.Event(lambda t, y: t - 1, change=lambda t, y: moved.tolist())
+    r = lf.solve_ivp(rest, (0, 2), np.eye(4), group="SE(3)", frame="space", events=event).check()
+    assert np.abs(r.y_end - moved).max() < 1e-15
+    with pytest.raises(TypeError, match=r"change of events\[0\].*shape \(4, 4\)"):
+        lf.solve_ivp(rest, (0, 2), np.eye(4), group="SE(3)", frame="space", events=lf.Event("t - 1", change=lambda t, y: [0]))
+
+
 def test_several_mistakes_pickle():
     with pytest.raises(lf.ArgumentError) as caught:
         lf.RigidBody(inertia=[1.0, -2.0, 3.0], omega_bdy=[0.0, 1.0, 0.0])

@@ -7,7 +7,9 @@ import pydoc
 import subprocess
 import sys
 
+import numpy as np
 import pytest
+from conftest import ROTATION
 
 import lieflow as lf
 
@@ -67,3 +69,16 @@ def test_stubtest_without_options():
     done = subprocess.run([sys.executable, "-m", "mypy.stubtest", "lieflow"], capture_output=True, text=True)
     # Of NumPy 2.5 aliases of arrays look like functions; that is no fault of a signature.
     assert "__signature__" not in done.stdout and "is not present in stub" not in done.stdout, done.stdout
+
+
+def test_the_help_says_what_a_run_needs():
+    text = " ".join(lf.solve_ivp.__doc__.split())
+    for words in ("the maps cay and pade22 leave det = 1", "f is not evaluated at a stop", "rtol·min(1, 10·(angle of the step))"):
+        assert words in text, words
+    of = {}
+    for method in ("rkmk dop853", "rkmk dopri5 cay", "cf43", "rk dopri5", "rkmk4", "magnus43"):
+        runs = [{"rtol": 1e-8}, {"atol": 1e-8}]
+        steps = [lf.solve_ivp(lambda t, y: [np.cos(t), 0, 1], (0, 5), np.eye(3), method=method, **ROTATION, **keys).nsteps for keys in runs]
+        of[method] = steps[0] == steps[1]
+    assert of == {method: method.startswith("rkmk d") for method in of}
+    assert "is two of them: re, im" in " ".join(lf.CFunction.__doc__.split())

@@ -211,3 +211,11 @@ def test_a_refused_time_within_a_step_is_explained():
     run.y = run.y
     with pytest.raises(lf.ArgumentError, match="the last step is not known"):
         run.interpolate(middle)
+
+
+def test_a_state_off_m_is_told_by_its_name():
+    run = lf.Integrator(lambda t, y: [0, 0, 1.0], y0=np.eye(3), group="SO(3)", frame="body")
+    for name, value in (("y", 2 * np.eye(3)), ("state", 2 * np.eye(3))):
+        with pytest.raises(lf.ArgumentError, match=r"^y: a point at a relative distance of 8.0e0 from SO\(3\), expected at most 1e-6$"):
+            setattr(run, name, value)
+    assert np.array_equal(run.y, np.eye(3))

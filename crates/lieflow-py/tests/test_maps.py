@@ -234,3 +234,13 @@ def test_an_interrupt_of_a_map_of_many_matrices(rng, threads):
     if threads == 1:
         skew, group = a[:3000] - np.swapaxes(a[:3000], 1, 2), lf.SO(96)
         assert interrupted(lambda: group.cay(skew)) < 0.2
+
+
+def test_series_with_very_many_terms():
+    # Beyond k = 410 the coefficients are 0 in float64.
+    u, v = np.array([0.3, -2.0, 0.7]), np.array([1.0, 0.5, -0.2])
+    exact = lf.so3.dexpinv(u, v)
+    for q in (60, 100, 10**9):
+        assert np.abs(lf.so3.dexpinv(u, v, q=q) - exact).max() < 1e-15, q
+    with pytest.raises(lf.ArgumentError, match="a sum up to q = 40 that is not finite"):
+        lf.so3.dexpinv([1e10, 0, 0], [0, 1, 0], q=40)

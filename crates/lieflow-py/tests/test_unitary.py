@@ -329,3 +329,37 @@ def test_formulas_are_events_of_complex_numbers():
     assert np.abs(np.abs(psi.y_events[0][:, 0]) ** 2 - 0.95).max() < 1e-12 and len(psi.t_events[0]) >= 3
     with pytest.raises(lf.ArgumentError, match=r"events\[0\].*`y11`"):
         lf.solve_ivp(lambda t, y: -1j * h, (0, 9), np.eye(2), events="y11", group="U(2)", frame="space")
+
+
+def test_complex_numbers_lie_in_memory_as_pairs():
+    import ctypes
+
+    def f(t, y):
+        a, b = y[0, 1].imag, y[1, 0].real
+        return np.array([[1j * a, 0.3 + 1j * b], [-0.3 + 1j * b, 0.2j]])
+
+    numbers = ctypes.POINTER(ctypes.c_double)
+
+    @ctypes.CFUNCTYPE(None, ctypes.c_double, numbers, numbers, numbers)
+    def of_c(t, y, v, p):
+        a, b = y[3], y[4]
+        for i, x in enumerate([0, a, 0.3, b, -0.3, b, 0, 0.2]):
+            v[i] = x
+
+    y0 = lf.U(2).random(rng=1)
+    runs = [lf.solve_ivp(fun, (0, 2), y0, group="U(2)", frame="space", steps=20) for fun in (f, lf.CFunction(of_c))]
+    assert np.abs(runs[0].y_end - runs[1].y_end).max() < 1e-14 < np.abs(runs[0].y_end - y0).max()
+
+
+@pytest.mark.parametrize(("group", "leaves"), [("SL(2)", False), ("SL(3)", True), ("SU(2)", False), ("SU(3)", True), ("SO(3)", False)])
+def test_which_maps_leave_the_determinant(group, leaves):
+    n = int(group[3])
+    a = np.array([[0.3, 0.2, 0.5], [0.1, -0.2, 0.4], [0.3, 0.9, -0.1]])[:n, :n]
+    a = a + 0.3j * (a + a.T) if group[:2] == "SU" else a
+    a = a - a.conj().T if group[:2] != "SL" else a
+    a = a - np.trace(a) / n * np.eye(n)
+    value = lf.so3.vee(a) if group == "SO(3)" else a
+    for name in ("exp", "cay", "pade22"):
+        r = lf.solve_ivp(lambda t, y: value * (1 + t), (0, 1), np.eye(n), group=group, frame="space", method=f"rkmk4 {name}", steps=4)
+        off = abs(np.linalg.det(r.y_end) - 1)
+        assert off > 1e-10 if leaves and name != "exp" else off < 1e-14

@@ -5,8 +5,8 @@ mod keys;
 mod kind;
 mod mapped;
 mod model;
-mod pulses;
 mod quantity;
+mod second_run;
 mod system;
 
 pub use forms::Forms;
@@ -14,6 +14,8 @@ pub(crate) use keys::*;
 pub use kind::*;
 pub use lieflow_runs::run::*;
 pub use model::{Model, Problem};
-pub use pulses::{SHORT_STEPS, stop_after_hardest, time_to_search};
 pub(crate) use quantity::*;
+pub use second_run::{
+    LAST_DIGITS, SHORT_STEPS, other_tolerance, stop_after_hardest, time_to_search,
+};
 pub(crate) use system::*;

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import operator
 from collections.abc import Callable, Sequence
 from fractions import Fraction
@@ -20,6 +21,9 @@ __all__ = [
 
 Array = NDArray[np.float64]
 T = TypeVar("T")
+
+#: Beyond this k the coefficients B_k/k! are 0 in float64.
+COEFFICIENTS = 410
 
 #: How far matrices may be from an algebra or from a group, relative to their size.
 MEMBERSHIP = 1e-6
@@ -182,20 +186,33 @@ def kept(cache: dict[Any, T], key: Any, make: Callable[[], T]) -> T:
 
 def series(ad: Callable[[Any, Any], Any], u: Any, v: Any, q: int) -> Any:
     """Return Σ B_k/k! ad_u^k v up to k = q, with the Bernoulli numbers B_0 = 1, B_1 = −1/2, …"""
-    from math import comb
-
-    b: list[Fraction] = []
-    total, term, factorial = v + 0.0 * u, v, 1
-    for k in range(q + 1):
-        rest = sum((comb(k + 1, j) * b[j] for j in range(k)), Fraction(0))
-        b.append(Fraction(1) if k == 0 else -rest / (k + 1))
-        if k == 0:
-            continue
-        factorial *= k
-        term = ad(u, term)
-        if b[k]:
-            total = total + float(b[k] / factorial) * term
+    total, term = v + 0.0 * u, v
+    with np.errstate(over="ignore", invalid="ignore"):  # told below
+        for k in range(1, min(q, COEFFICIENTS) + 1):
+            term = ad(u, term)
+            if k == 1 or k % 2 == 0:
+                total = total + baker(k) * term
+    first("u", ~np.isfinite(total).all(-1), f"a sum up to q = {q} that is not finite", "a smaller u, or no q")
     return total
+
+
+#: The first coefficients of the series, when they are asked for.
+_BAKER: dict[int, list[float]] = {}
+
+
+def first_coefficients(count: int) -> list[float]:
+    """Return B_k/k! for k = 0, 1, …"""
+    b: list[Fraction] = []
+    for k in range(count):
+        b.append(Fraction(1) if k == 0 else -sum((math.comb(k + 1, j) * b[j] for j in range(k)), Fraction(0)) / (k + 1))
+    return [float(x / math.factorial(k)) for k, x in enumerate(b)]
+
+
+def baker(k: int) -> float:
+    """Return B_k/k!; from k = 60 on, for even k, 2(−1)^(k/2 + 1)/(2π)^k, where ζ(k) is 1."""
+    if k < 60:
+        return kept(_BAKER, 60, lambda: first_coefficients(60))[k]
+    return (2.0 if k % 4 == 2 else -2.0) * (2.0 * math.pi) ** -k
 
 
 def together(name_a: str, a: Array, tail_a: int, name_b: str, b: Array, tail_b: int) -> tuple[Array, Array]:

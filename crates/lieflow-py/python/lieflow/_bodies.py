@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _lieflow
-from ._arrays import finite, first, name_of, number, own, real, whole
+from ._arrays import MEMBERSHIP, finite, first, name_of, number, own, real, whole
 from .so3 import contains
 from ._errors import ArgumentError
 
@@ -46,7 +46,7 @@ class FreeBodies:
         if g is not None and g.shape != (len(m), 3, 3):
             raise ArgumentError("attitude", f"shape {g.shape}", f"shape ({len(m)}, 3, 3)")
         if g is not None:
-            first("attitude", ~contains(g, 1e-6), "a matrix that is no rotation", "rotations")
+            first("attitude", ~contains(g, MEMBERSHIP), "a matrix that is no rotation", "rotations")
         self._inertia = j
         self._bodies = _lieflow.FreeBodies(j, m, g)
         if self._bodies.impossible is not None:

@@ -47,13 +47,20 @@ def _again(kind: type[ArgumentError], args: tuple[Any, ...], values: dict[str, A
 
 def mistakes(found: list[tuple[str, str, str]]) -> ArgumentError:
     """Return the error of all mistakes in the keys of a problem: argument, what is wrong, advice."""
-    errors = [ArgumentError(argument or "keys", value, "") for argument, value, _ in found]
+    errors = [ArgumentError(argument or "keys", value) for argument, value, _ in found]
     for error, (_, _, advice) in zip(errors, found):
         error.expected = advice
+    return together(errors)
+
+
+def together(errors: list[ArgumentError]) -> ArgumentError:
+    """Return the first of some mistakes, with the words of all. An advice has its own lines, as on the command line."""
+    for error in errors:
+        advice = "\n  = " + error.expected.replace("\n", "\n        ") if error.expected else ""
+        error.args = (f"{error.argument}: {error.value}{advice}",)
     first = errors[0]
     first.others = tuple(errors[1:])
-    words = [f"{argument or 'keys'}: {value}" + (f" ({advice})" if advice else "") for argument, value, advice in found]
-    first.args = ("\n".join(words),)
+    first.args = ("\n".join(map(str, errors)),)
     return first
 
 

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _lieflow
 from ._arrays import finite, kept, name_of, own, real
-from ._errors import ArgumentError
+from ._errors import ArgumentError, together
 from ._groups import Group
 
 __all__ = ["CFunction", "Field", "Parts", "Quantities", "Samples"]
@@ -75,9 +75,9 @@ class State(Quantities):
 class CFunction:
     """The address of a C function as f: ``void f(double t, const double *y, double *v, const double *p)``.
 
-    y has the numbers of the point by rows, v gets the value of f and is 0 before, p is ``parameters``. Of
-    :class:`lieflow.Parts` both have vectors first, then rotations, then numbers. The run calls it
-    without the interpreter. A wrong address cannot be seen and ends the program.
+    y has the numbers of the point by rows, v gets the value of f and is 0 before, p is ``parameters``. A complex number, as
+    on U(n), is two of them: re, im. Of :class:`lieflow.Parts` both have vectors first, then rotations, then numbers. The
+    run calls it without the interpreter. A wrong address cannot be seen and ends the program.
 
     Parameters
     ----------
@@ -413,11 +413,10 @@ class Field:
             return _lieflow.Formulas(columns, counts, keys)
         except ArgumentError as error:
             # The first index is that of the part.
-            for wrong in (error, *error.others):
-                wrong.argument = _of_part(wrong.argument, names, row)
-            lines = [f"{e.argument}: {e.value}{f' ({e.expected})' if e.expected else ''}" for e in (error, *error.others)]
-            error.args = ("\n".join(lines),)
-            raise error from None
+            wrong = [error, *error.others]
+            for one in wrong:
+                one.argument = _of_part(one.argument, names, row)
+            raise together(wrong) from None
 
     def __repr__(self) -> str:
         group = repr(self.group)

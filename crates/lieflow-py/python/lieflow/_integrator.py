@@ -14,7 +14,7 @@ from ._errors import ArgumentError
 from ._fields import Parts
 from ._ivp import METHOD, Ready, check_of_problem, check_stops, settings_of, span_of
 from ._problems import Problem
-from ._unitary import ComplexPoints, Unitary
+from ._unitary import ComplexPoints
 
 __all__ = ["Integrator"]
 

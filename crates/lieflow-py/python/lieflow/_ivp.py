@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Sequence
+from functools import partial
 from time import thread_time
 from typing import Any
 
@@ -11,12 +12,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _lieflow
-from ._arrays import finite, kept, name_of, number, real, what, whole
-from ._errors import ArgumentError, RunError
+from ._arrays import MEMBERSHIP, finite, kept, name_of, number, real, value, what, whole
+from ._errors import ArgumentError
 from ._fields import CFunction, Field, Parts, Quantities, Samples, State, address
 from ._groups import Group
 from ._problems import Problem
 from ._result import Layout, OdeSolution, Result, warn_of_events
+from ._second_run import Repeated, beyond, changed, second
 from ._unitary import ComplexPoints, ComplexState, Unitary, is_su2, is_unitary_name
 
 __all__ = ["Event", "solve_ivp"]
@@ -25,10 +27,6 @@ Array = NDArray[np.float64]
 
 #: The method if none is given.
 METHOD = "rkmk dop853 exp"
-#: The least relative tolerance that rounding allows.
-LEAST = 1e-14
-# The relative change of a start that shows how rounding grows.
-LAST_DIGITS = 64 * 2.0**-52
 
 
 class Event:
@@ -77,6 +75,10 @@ class Event:
         self.points = None if points is None else whole("points", points, 1, 100_000)
         default = g if isinstance(g, str) else getattr(g, "__name__", "event")
         self.name = name if name is not None else default
+
+    def _without_end(self) -> Event:
+        """The event that ends no run."""
+        return Event(self.g, 0, self.direction, self.change, self.points, self.name)
 
     def __repr__(self) -> str:
         return f"lieflow.Event({self.name}, terminal={self.terminal}, direction={self.direction})"
@@ -311,13 +313,16 @@ class Ready:
         elif layout is not None:
             of_layout = g
             g = lambda t, y, *args: of_layout(t, layout.split(y), *args)  # noqa: E731
+        name = f"events[{i}] ({event.name})"
         if layout is not None and change is not None:
-            changed = change
+            of_parts = change
 
             def change(t: float, y: Array, *args: Any) -> Array:
-                return _joined(layout.join, f"change of events[{i}]", t, changed(t, layout.split(y), *args), True)
+                return _joined(layout.join, f"change of events[{i}]", t, of_parts(t, layout.split(y), *args), True)
 
-        return (g, f"events[{i}] ({event.name})", event.direction, event.terminal, change, event.points)
+        elif change is not None and self.shape == (4, 4) and self.space.value == [6]:
+            change = _of_motions(f"change of {name}", change)
+        return (g, name, event.direction, event.terminal, change, event.points)
 
 
 def _joined(join: Callable[..., Array], name: str, t: float, *x: Any) -> Array:
@@ -326,6 +331,20 @@ def _joined(join: Callable[..., Array], name: str, t: float, *x: Any) -> Array:
         return join(f"{name} at t = {t}", *x)
     except ArgumentError as error:
         raise TypeError(str(error)) from None
+
+
+def _of_motions(name: str, change: Callable[..., Any]) -> Callable[..., Array]:
+    """A change of matrices of SE(3), whose last row is looked at: a run has no place for it."""
+
+    def checked(t: float, y: Array, *args: Any) -> Array:
+        found = value(name, change(t, y, *args), (4, 4), t)
+        for j, right in enumerate((0, 0, 0, 1)):
+            if abs(found[3, j] - right) > MEMBERSHIP:
+                expected = f"{right}: the last row of [R x; 0 1] is [0, 0, 0, 1]"
+                raise ArgumentError(f"{name} at t = {t}, y[3, {j}]", str(float(found[3, j])), expected)
+        return found
+
+    return checked
 
 
 def solve_ivp(
@@ -357,7 +376,7 @@ def solve_ivp(
     """Solve ẏ = λ_*(f(t, y))(y) on a manifold M with the action of a Lie group.
 
     On a group (``action="translation"``) this is ẏ = f y in space, and ẏ = y f in the body. Every point is on M to
-    rounding.
+    rounding; on SL(n) and SU(n) with n > 2 the maps cay and pade22 leave det = 1 by the error of the method.
 
     Parameters
     ----------
@@ -384,16 +403,17 @@ def solve_ivp(
         numbers ``re11``, ``im11`` and so on; or :class:`lieflow.Event`.
     rtol, atol : float, optional
         Tolerances for each step. **The defaults are those of scenes, 1e-14 for methods of order 8; beside the one that is
-        given the other is 0.** On a group the error is an angle, and the tolerance rtol + atol; rtol counts less in the
-        short steps of methods that take each step twice to see their error.
+        given the other is 0.** On a group the error is an angle, and the tolerance rtol + atol. Methods that compare two
+        points of M, which are all but rkmk with a pair and Taylor series, have rtol·min(1, 10·(angle of the step)) in place
+        of rtol.
     first_step, min_step, max_step, max_steps : optional
         Limits of the adaptive step size.
     dt, steps : optional
         Steps of one size, or so many. Then rtol, atol and the limits of the step size are refused. The last step, and
         that before a stop, may be shorter; after a stop the steps of this size begin again.
     stops : array_like, optional
-        Times at which a step ends, where f or one of its derivatives jumps. Those of samples are added. With ``steps`` a
-        stop between two of them is one step more.
+        Times at which a step ends, where f or one of its derivatives jumps. f is not evaluated at a stop. Those of samples
+        are added. With ``steps`` a stop between two of them is one step more.
     args : tuple
         Further arguments of f, of the events and of their changes. The callback has none.
     group : str, Group or Parts
@@ -410,7 +430,7 @@ def solve_ivp(
     quantities : list of str, optional
         Of a problem: what is computed.
     callback : callable, optional
-        callback(t, y), without ``args``, is called at each point of the output. If it returns True, the run ends.
+        callback(t, y), without ``args``, is called at each point of the output. If it returns True, the run ends there.
 
     Returns
     -------
@@ -462,16 +482,14 @@ def _of_field(
     events: list[Event], callback: Any, space: tuple[Any, Any, Any, Any],
 ) -> Result:
     ready = Ready(fun, y0, *space, settings["linear"], span)
-    if ready.linear != settings["linear"]:
-        settings = {**settings, "linear": ready.linear}
-    settings = {**settings, "kinks": ready.kinks}
+    own = {**settings, "linear": ready.linear, "kinks": [*settings["kinks"], *ready.kinks]}
     parts = [ready.event(i, event, fun) for i, event in enumerate(events)]
     told = callback
     if callback is not None and ready.layout is not None:
         layout = ready.layout
         told = lambda t, y: callback(t, layout.split(y))  # noqa: E731
     clock = thread_time()
-    found = _lieflow.solve(ready.space, ready.field, ready.args, method, span, ready.flat, settings, times, parts, told)
+    found = _lieflow.solve(ready.space, ready.field, ready.args, method, span, ready.flat, own, times, parts, told)
     seconds = thread_time() - clock
     warn_of_events(found, 3)
     curve, _ = found.pop("curve"), found.pop("state")
@@ -488,23 +506,17 @@ def _of_field(
     made_by = (ready.space_args, method, ready.linear, ready.flat)
     sol = None if curve is None else OdeSolution(curve, made_by, ready.layout)
 
-    def again(result: Result) -> tuple[str, Result, Result | None]:
-        def run(finer: dict[str, Any], change: float = 0.0) -> Result:
-            end, others = _beyond(result, span, events)
-            start: Any = np.reshape(_changed(ready.flat, change), ready.shape)  # y0, which may have changed
-            start = start if ready.layout is None else ready.layout.split(start)
-            return _of_field(fun, (span[0], end), start, method, finer, result.t, others, None, space)
+    def again(result: Result) -> Repeated:
+        others = _on(result, events)
 
-        return _second(run, settings, result, span[0], seconds)
+        def run(finer: dict[str, Any], change: float = 0.0) -> Result:
+            start: Any = np.reshape(changed(ready.flat, change), ready.shape)  # y0, which may have changed
+            start = start if ready.layout is None else ready.layout.split(start)
+            return _of_field(fun, (span[0], beyond(result, span)), start, method, finer, result.t, others, None, space)
+
+        return second(run, settings, result, span[0], seconds)
 
     return Result(sol=sol, _layout=ready.layout, _again=again, _changes=_changes(events), **found)
-
-
-def _changed(start: Array | list[float], change: float) -> Array:
-    """Return a start with relative changes of neighbouring numbers in opposite directions."""
-    signs = np.resize([1.0, -1.0], np.shape(start))
-    changed: Array = np.asarray(start) * (1.0 + change * signs)
-    return changed
 
 
 def _changes(events: list[Event]) -> list[int]:
@@ -512,14 +524,9 @@ def _changes(events: list[Event]) -> list[int]:
     return [i for i, event in enumerate(events) if event.change]
 
 
-def _beyond(first: Result, span: tuple[float, float], events: list[Event]) -> tuple[float, list[Event]]:
-    """Return the end and the events of a second run. The zero that ended the first may be earlier or later there."""
-    if first.status == 0:
-        return span[1], events
-    low, high = min(span), max(span)
-    end = first.t_end + (first.largest_step if span[1] > span[0] else -first.largest_step)
-    on = [Event(event.g, 0, event.direction, event.change, event.points, event.name) for event in events]
-    return min(max(end, low), high), on
+def _on(first: Result, events: list[Event]) -> list[Event]:
+    """Return the events of a second run. One that ended the first run may be earlier or later there."""
+    return events if first.status == 0 else [event._without_end() for event in events]
 
 
 def check_stops(settings: dict[str, Any], span: tuple[float, float]) -> None:
@@ -539,66 +546,12 @@ def check_of_problem(group: Any, frame: Any, action: str, linear: bool) -> None:
         raise ArgumentError("linear", repr(linear), "none: a problem knows whether it is linear")
 
 
-def _second(
-    run: Callable[..., Result], settings: dict[str, Any], first: Result, t0: float, seconds: float
-) -> tuple[str, Result, Result | None]:
-    """Return what a second run is, the run, and the first one again from a start whose last digits are changed.
-
-    The steps of the second run are no more like those of the first than 5 %.
-    """
-    if not first.nsteps:
-        raise RunError("no estimate: the run has no step")
-    finer = {**settings, "dense_output": False}
-    if settings["max_steps"] is not None:
-        finer["max_steps"] = 10 * settings["max_steps"]
-    limits = dict.fromkeys(("rtol", "atol", "first_step", "min_step", "max_step", "steps"))
-    found_by, mean = "a second run with each step in two parts", abs(first.t_end - t0) / first.nsteps
-    if first._tolerances is None:
-        # Where knots have made the steps shorter than they were to be, it is their mean that is split.
-        h = min(settings["dt"] or first.largest_step, first.largest_step)
-        other = run({**finer, **limits, "dt": mean if mean < 0.95 * h else h, "split": True})
-    else:
-        by_tolerance, finer = _finer(finer, first, t0, seconds)
-        other, is_limited = run(finer), settings["min_step"] is not None
-        if not is_limited and (other.status < 0 or 0.95 * first.nsteps < other.nsteps < 1.05 * first.nsteps):
-            # A tolerance below rounding chooses the same steps again. Some methods take a step in two halves.
-            found_by = "a second run in steps of a quarter of the mean size"
-            other = run({**finer, **limits, "dt": mean / 4})
-        else:
-            found_by = by_tolerance
-    if other.status < 0 or len(other.t) < len(first.t):
-        raise RunError(f"no estimate: {found_by} ended at t = {other.t_end}: {other.message}")
-    try:
-        grown = run({**settings, "dense_output": False}, LAST_DIGITS)
-    except (RunError, ArgumentError):  # it is no start, for its digits
-        return found_by, other, None
-    return found_by, other, grown if len(grown.t) == len(first.t) else None
-
-
-def _finer(settings: dict[str, Any], first: Result, t0: float, seconds: float) -> tuple[str, dict[str, Any]]:
-    """Return what a second run by tolerances is, and its settings, after a first one from t0 that took so many seconds."""
-    finer = dict(settings)
-    rtol, atol = first._tolerances
-    tenth = rtol + atol >= 20 * LEAST
-    factor = 0.1 if tenth else 10.0
-    found_by = "a second run at a tenth of the tolerance" if tenth else "a second run at ten times the tolerance"
-    # Short steps see what steps by error pass over, such as a pulse.
-    short = abs(first.t_end - t0) / _lieflow.SHORT_STEPS
-    if short > (settings["min_step"] or 0.0) and _lieflow.time_to_search(first.nsteps, seconds) is not None:
-        found_by += f", in at least {_lieflow.SHORT_STEPS} steps"
-        finer["max_step"] = min(settings["max_step"] or short, short)
-        finer["first_step"] = settings["first_step"] and min(settings["first_step"], short)
-    if first._hardest is not None:
-        finer["stops"] = sorted({*settings["stops"], first._hardest})  # a pulse that the first run has found
-    return found_by, {**finer, "rtol": rtol * factor, "atol": atol * factor}
-
-
 def _of_problem(
     problem: Problem, span: tuple[float, float], y0: Any, method: str | None, settings: dict[str, Any],
     times: Array | None, events: list[Event], quantities: Any, callback: Any, args: tuple[Any, ...],
 ) -> Result:
     asked = problem.asked(quantities)
-    texts = tuple((f"events[{i}]", e.g) for i, e in enumerate(events) if isinstance(e.g, str))
+    texts = _texts(events)
     model, layout = problem._both(asked, texts)
     if method is None:
         method = problem.method
@@ -617,10 +570,10 @@ def _of_problem(
         parts.append((g, f"events[{i}] ({event.name})", event.direction, event.terminal, change, event.points))
     told = None if callback is None else _of_rows(callback, layout, ())
     jumps, kinks = problem._problem.knots(span)
-    settings = {**settings, "stops": [*settings["stops"], *jumps], "kinks": kinks}
+    own = {**settings, "stops": [*settings["stops"], *jumps], "kinks": [*settings["kinks"], *kinks]}
     start = problem._start(y0, model, method)
     clock = thread_time()
-    found = model.solve(method, span, start, settings, times, parts, told)
+    found = model.solve(method, span, start, own, times, parts, told)
     seconds = thread_time() - clock
     warn_of_events(found, 3)
     curve, lost, rows = found.pop("curve"), found.pop("lost"), found["y"]
@@ -630,41 +583,58 @@ def _of_problem(
     found["y_events"] = [layout.split(y) for y in found["y_events"]]
     found["y_end"] = State(layout.split(found["y_end"]), found.pop("state"), problem._form(model, method))
     sol = None if curve is None else OdeSolution(curve, (problem, method, asked, texts), layout)
-    if sol is not None and found["status"] == 1 and found["t_end"] != span[1]:
+    by_event = found["status"] == 1 and not found["_by_callback"]
+    if sol is not None and by_event and found["t_end"] != span[1] and math.isfinite(span[1]):
 
         def rest() -> _lieflow.Curve:
             on = [(*part[:3], 0, *part[4:]) for part in parts]
-            whole: _lieflow.Curve | None = model.solve(method, span, start, settings, None, on, None)["curve"]
+            whole: _lieflow.Curve | None = model.solve(method, span, start, own, None, on, None)["curve"]
             return curve if whole is None else whole
 
         sol._rest = span[1], rest
 
-    def again(result: Result) -> tuple[str, Result, Result | None]:
-        plain = y0 is None and len(result.t) > 0 and not any(event.change for event in events)
-        # Euler angles and quaternions are those of the rows, up to turns and signs.
-        found = model.exact(span[0], result.t, method, rows) if plain else None
-        exact = None if found is None else layout.split(found)
-        if exact is not None and not events:
-            return "the exact motion", Result(y=exact, t_events=[]), None
-
-        def run(finer: dict[str, Any], change: float = 0.0) -> Result:
-            end, others = _beyond(result, span, events)
-            of = start if change == 0.0 else _changed(model.start(method) if start is None else start, change)
-            return _of_problem(problem, (span[0], end), of, method, finer, result.t, others, asked, None, args)
-
-        found_by, other, grown = _second(run, settings, result, span[0], seconds)
-        if exact is not None:
-            return "the exact motion, and the events by " + found_by, Result(y=exact, t_events=other.t_events), None
-        return found_by, other, grown
-
     def first() -> Quantities:
         is_start = found["t"][0] == span[0]
-        row = rows[0] if is_start else model.stepper(method, span, start, settings).row()
+        row = rows[0] if is_start else model.stepper(method, span, start, own).row()
         return layout.split(row[None], every=True)
 
+    again: Any = partial(_problem_again, problem, span, start, method, settings, (asked, events, args), seconds)
+    if any(callable(event.g) or event.change for event in events):
+        repeat = again
+        again = lambda result: repeat(result)  # noqa: E731, functions of the user need not pickle
     return Result(
         sol=sol, _rows=rows, _first=first, _layout=layout, _again=again, _changes=_changes(events), **found
     )
+
+
+def _problem_again(
+    problem: Problem, span: tuple[float, float], start: Array | None, method: str, settings: dict[str, Any],
+    given: tuple[tuple[str, ...], list[Event], tuple[Any, ...]], seconds: float, result: Result,
+) -> Repeated:
+    """The exact motion or a second run of a problem, beside a result whose run took so many seconds."""
+    asked, events, args = given
+    model, layout = problem._both(asked, _texts(events))
+    plain = start is None and len(result.t) > 0 and not _changes(events)
+    # Euler angles and quaternions are those of the rows, up to turns and signs.
+    found = model.exact(span[0], result.t, method, result._rows) if plain else None
+    exact = None if found is None else layout.split(found)
+    if exact is not None and not events:
+        return "the exact motion", Result(y=exact, t_events=[]), None
+    others = _on(result, events)
+
+    def run(finer: dict[str, Any], change: float = 0.0) -> Result:
+        of = start if change == 0.0 else changed(model.start(method) if start is None else start, change)
+        return _of_problem(problem, (span[0], beyond(result, span)), of, method, finer, result.t, others, asked, None, args)
+
+    found_by, other, grown = second(run, settings, result, span[0], seconds)
+    if exact is not None:
+        return "the exact motion, and the events by " + found_by, Result(y=exact, t_events=other.t_events), None
+    return found_by, other, grown
+
+
+def _texts(events: list[Event]) -> tuple[tuple[str, str], ...]:
+    """The events that are formulas of a problem, each with its name."""
+    return tuple((f"events[{i}]", event.g) for i, event in enumerate(events) if isinstance(event.g, str))
 
 
 def _of_rows(g: Callable[..., Any], layout: Layout, args: tuple[Any, ...]) -> Callable[..., Any]:

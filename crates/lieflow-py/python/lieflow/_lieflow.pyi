@@ -12,6 +12,7 @@ __all__ = [
     "Curve",
     "Formulas",
     "FreeBodies",
+    "LAST_DIGITS",
     "MatrixGroup",
     "Model",
     "Problem",
@@ -26,6 +27,7 @@ __all__ = [
     "expm",
     "expm_complex",
     "kinds",
+    "other_tolerance",
     "se3_cay",
     "se3_ccsk123",
     "se3_ccsk321",
@@ -46,6 +48,7 @@ __all__ = [
     "solve",
     "time_to_search",
 ]
+LAST_DIGITS: float
 SHORT_STEPS: int
 __version__: str
 
@@ -228,6 +231,7 @@ class Scene:
 def kinds() -> list[dict[str, Any]]: ...
 def bundled() -> list[str]: ...
 def check_method(method: str) -> str: ...
+def other_tolerance(rtol: float, atol: float) -> float: ...
 def time_to_search(steps: int, seconds: float) -> float | None: ...
 def solve(
     space: Space,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Iterator
+from functools import partial
 from threading import RLock
 from typing import Any, NamedTuple
 
@@ -11,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _lieflow, so3
-from ._arrays import first
+from ._arrays import MEMBERSHIP, first
 from ._errors import ArgumentError, RunError
 from ._fields import Parts, Quantities, numbered
 from ._unitary import ComplexPoints
@@ -80,8 +81,8 @@ class OdeSolution:
 
     ``sol(t)`` has the shape of t followed by that of y; of a problem and of parts it has arrays by name. Times may be in any
     order. It can be pickled, and used from any thread. Error: that of the continuous extension of the method. A time
-    outside of the run is refused. Where an event ended the run of a problem, the solution goes on to the end of t_span,
-    and this rest is computed when it is asked for; a pickled solution has what was computed.
+    outside of the run is refused. Where an event ended the run of a problem, the solution goes on to the end of t_span, if
+    that is finite. This rest is computed when it is asked for; a pickled solution has what was computed.
     """
 
     __slots__ = ("_curve", "_layout", "_lock", "_made_by", "_rest")
@@ -258,8 +259,8 @@ class Result:
         return [*super().__dir__(), *(y if isinstance(y, Quantities) else ())]
 
     def __getstate__(self) -> dict[str, Any]:
-        # f may be a function that cannot be pickled.
-        state = {name: value for name, value in self.__dict__.items() if name != "_again"}
+        # f or an event may be a function that cannot be pickled. What repeats a problem without them is a partial.
+        state = {name: value for name, value in self.__dict__.items() if name != "_again" or isinstance(value, partial)}
         return {**state, "_first": self._start()} if "_first" in state else state
 
     def _start(self) -> Quantities | None:
@@ -302,11 +303,11 @@ class Result:
         if isinstance(y, Quantities):
             y = y.get("attitude", y.get("quaternion", np.empty(0)))
         if y.shape[1:] == (3, 3) and np.isrealobj(y):
-            first("y", ~so3.contains(y, 1e-6), "a matrix that is no rotation", "rotations")
+            first("y", ~so3.contains(y, MEMBERSHIP), "a matrix that is no rotation", "rotations")
             return Rotation.from_matrix(y)
         if y.shape[1:] == (4,) and np.isrealobj(y):
             off = np.abs(np.linalg.norm(y, axis=1) - 1.0)
-            first("y", ~(off <= 1e-6), "a vector of another length than 1", "unit quaternions")
+            first("y", ~(off <= MEMBERSHIP), "a vector of another length than 1", "unit quaternions")
             return Rotation.from_quat(y, scalar_first=True)
         raise ArgumentError("y", f"shape {y.shape}", "rotations (k, 3, 3) or unit quaternions (k, 4)")
 

@@ -108,7 +108,7 @@ def from_quaternion(q: ArrayLike, out: Array | None = None, *, scalar_first: boo
     """Return the rotations (..., 3, 3) of unit quaternions (..., 4). They are normalised if they are off by at most 1e-6."""
     a = elements("q", q, (4,))
     norm = np.linalg.norm(a, axis=-1, keepdims=True)
-    first("q", np.abs(norm[..., 0] - 1.0) > 1e-6, "a quaternion of another length", "length 1")
+    first("q", np.abs(norm[..., 0] - 1.0) > MEMBERSHIP, "a quaternion of another length", "length 1")
     w, x, y, z = np.moveaxis(a / norm, -1, 0) if scalar_first else np.moveaxis(np.roll(a / norm, 1, -1), -1, 0)
     return into(_of_quaternion(w, x, y, z), out)
 

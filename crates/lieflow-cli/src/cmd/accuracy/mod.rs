@@ -14,13 +14,15 @@ use lieflow::problems::explained_by_rounding;
 use lieflow::solve::{Next, Stats, Status};
 use lieflow::tolerance::Tolerance;
 use lieflow::{SaveAt, TimeGrid};
-use lieflow_model::problem::{Outcome, Plan, Steps, Watcher, stop_after_hardest};
+use lieflow_model::problem::{
+    LAST_DIGITS, Outcome, Plan, Steps, Watcher, other_tolerance, stop_after_hardest,
+};
 use lieflow_model::scene::Scene;
 use lieflow_model::schema::{Component, Observable, Row};
 
 use self::advice::POOR;
 use self::sizes::size;
-use self::unseen::{LAST_DIGITS, with_rounding};
+use self::unseen::with_rounding;
 use super::apart::{
     Apart, Beside, ColumnApart, Gap, Largest, Limits, Size, ZerosApart, derived_of, norm, parts_of,
 };
@@ -42,8 +44,6 @@ const AMPLE: f64 = 100.0;
 /// [`FEW_DIGITS`].
 const SMALLER: f64 = 100.0;
 const FEW_DIGITS: f64 = 1e-6;
-/// A tolerance this small is compared with a larger one: a smaller one is rounding.
-const SMALLEST: f64 = 1e-13;
 
 /// Rows, and zeros, for which the exact motion is evaluated, at most. A zero takes some twenty evaluations.
 const EXACT: [u64; 2] = [1_000_000, 50_000];
@@ -462,12 +462,12 @@ impl<'a> Check<'a> {
         // The default is beyond the smallest.
         let tolerances = way.tolerances.or_else(|| self.scene().tolerances());
         let tolerances = if way.default { Some([0.0; 2]) } else { tolerances };
-        let tolerance = tolerances.map(|both| way.factor * both[0].max(both[1]));
+        let change = tolerances.map(|both| other_tolerance(both.map(|x| way.factor * x)));
         let halved = 1.0 / (1.0 - 0.5_f64.powi(order as i32));
         // A step that is a tenth of the tolerance long, in terms of one by the tolerance; the error goes with its power p.
         let shorter = 0.1_f64.powf(1.0 / (order as f64 + 1.0));
         let ratio = shorter.powi(order as i32);
-        let (found_by, factor, largest, share) = match tolerance {
+        let (found_by, factor, largest, share) = match change {
             None => {
                 // Where knots or the end have made the steps shorter than they were to be, it is their mean that is split.
                 let [t0, t1] = self.run.t_span;
@@ -479,13 +479,13 @@ impl<'a> Check<'a> {
                 (FoundBy::SplitSteps, factor, None, 1.0 / (1.0 - TimeGrid::split_error(order)))
             }
             // The limit shortens the steps also where `h_max` or knots chose them.
-            Some(tolerance) if tolerance >= SMALLEST => {
+            Some(factor) if factor < 1.0 => {
                 let largest = Some(shorter * taken.largest);
-                (FoundBy::TenthTolerance, 0.1, largest, 1.0 / (1.0 - ratio))
+                (FoundBy::TenthTolerance, factor, largest, 1.0 / (1.0 - ratio))
             }
-            Some(_) => (FoundBy::TenfoldTolerance, 10.0, way.largest, ratio / (1.0 - ratio)),
+            Some(factor) => (FoundBy::TenfoldTolerance, factor, way.largest, ratio / (1.0 - ratio)),
         };
-        let split = tolerance.is_none();
+        let split = change.is_none();
         let (other, steps) = run(Way { factor: factor * way.factor, largest, split, ..way })?;
         let is_limited = steps as f64 > CHOSEN * taken.steps as f64;
         if found_by == FoundBy::TenfoldTolerance && is_limited {

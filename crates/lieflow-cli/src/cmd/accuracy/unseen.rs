@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use lieflow::problems::explained_by_rounding;
-use lieflow_model::problem::{SHORT_STEPS, time_to_search};
+use lieflow_model::problem::{LAST_DIGITS, SHORT_STEPS, time_to_search};
 use lieflow_timing::cpu_seconds;
 
 use super::{Check, NO_DIGIT, OWN, Way};
@@ -21,8 +21,6 @@ const RESOLVED: f64 = 1e-3;
 const BRIEF: f64 = 0.015;
 /// A motion that makes this of the last digits of its start is worth a warning.
 const AMPLIFIED: f64 = 1e-8;
-/// The change of the start that shows how rounding in a run grows. A change of one digit may be lost in sums.
-pub(super) const LAST_DIGITS: f64 = 64.0 * f64::EPSILON;
 /// Rounding in a run is like this part of it.
 const OF_CHANGE: f64 = 1.0 / 16.0;
 /// A motion that makes this of it is worth a warning, where the error of the method is smaller.

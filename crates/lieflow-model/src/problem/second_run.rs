@@ -1,7 +1,21 @@
-//! The search for short pulses. Steps that are chosen by their error can pass over a pulse of f: no stage is within it, so the
-//! error of a step shows nothing. A run in short steps looks for it.
+//! Second runs, which show the error of a first one: what the command line and the Python package agree on.
+//!
+//! Steps that are chosen by their error can pass over a pulse of f: no stage is within it, so the error of a step shows
+//! nothing. A run in short steps looks for it.
 
 use lieflow::Stats;
+
+/// The relative change of the numbers of a start that shows how rounding in a run grows. A change of one digit may be lost
+/// in sums.
+pub const LAST_DIGITS: f64 = 64.0 * f64::EPSILON;
+/// A run with a smaller tolerance is compared with one that has a larger tolerance: a tenth of it is rounding.
+const SMALLEST: f64 = 1e-13;
+
+/// The tolerance of a second run in that of the first, which has these rtol and atol: a tenth, or ten times where that is
+/// rounding.
+pub fn other_tolerance([rtol, atol]: [f64; 2]) -> f64 {
+    if rtol.max(atol) >= SMALLEST { 0.1 } else { 10.0 }
+}
 
 /// The number of steps of the same size that a run in short steps takes at least.
 pub const SHORT_STEPS: u64 = 2000;

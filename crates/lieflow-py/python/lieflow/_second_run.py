@@ -1,0 +1,89 @@
+"""Second runs, which show the error of a first one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _lieflow
+from ._errors import ArgumentError, RunError
+from ._result import Result
+
+__all__ = ["Repeated", "beyond", "changed", "finer", "second"]
+
+Array = NDArray[np.float64]
+#: What a run is compared with, its result, and the first run again from a changed start.
+Repeated = tuple[str, Result, Result | None]
+
+
+def changed(start: Array | list[float], change: float) -> Array:
+    """Return a start with relative changes of neighbouring numbers in opposite directions."""
+    signs = np.resize([1.0, -1.0], np.shape(start))
+    other: Array = np.asarray(start) * (1.0 + change * signs)
+    return other
+
+
+def beyond(first: Result, span: tuple[float, float]) -> float:
+    """Return the end of a second run. The zero that ended the first may be later there."""
+    if first.status == 0:
+        return span[1]
+    if first._by_callback:
+        return first.t_end
+    low, high = min(span), max(span)
+    end = first.t_end + (first.largest_step if span[1] > span[0] else -first.largest_step)
+    return min(max(end, low), high)
+
+
+def second(run: Callable[..., Result], settings: dict[str, Any], first: Result, t0: float, seconds: float) -> Repeated:
+    """Return what a second run is, the run, and the first one again from a start whose last digits are changed.
+
+    The steps of the second run are no more like those of the first than 5 %.
+    """
+    if not first.nsteps:
+        raise RunError("no estimate: the run has no step")
+    other_settings = {**settings, "dense_output": False}
+    if settings["max_steps"] is not None:
+        other_settings["max_steps"] = 10 * settings["max_steps"]
+    limits = dict.fromkeys(("rtol", "atol", "first_step", "min_step", "max_step", "steps"))
+    found_by, mean = "a second run with each step in two parts", abs(first.t_end - t0) / first.nsteps
+    if first._tolerances is None:
+        # Where knots have made the steps shorter than they were to be, it is their mean that is split.
+        h = min(settings["dt"] or first.largest_step, first.largest_step)
+        other = run({**other_settings, **limits, "dt": mean if mean < 0.95 * h else h, "split": True})
+    else:
+        by_tolerance, other_settings = finer(other_settings, first, t0, seconds)
+        other, is_limited = run(other_settings), settings["min_step"] is not None
+        if not is_limited and (other.status < 0 or 0.95 * first.nsteps < other.nsteps < 1.05 * first.nsteps):
+            # A tolerance below rounding chooses the same steps again. Some methods take a step in two halves.
+            found_by = "a second run in steps of a quarter of the mean size"
+            other = run({**other_settings, **limits, "dt": mean / 4})
+        else:
+            found_by = by_tolerance
+    if other.status < 0 or len(other.t) < len(first.t):
+        raise RunError(f"no estimate: {found_by} ended at t = {other.t_end}: {other.message}")
+    try:
+        grown = run({**settings, "dense_output": False}, _lieflow.LAST_DIGITS)
+    except (RunError, ArgumentError):  # it is no start, for its digits
+        return found_by, other, None
+    return found_by, other, grown if len(grown.t) == len(first.t) else None
+
+
+def finer(settings: dict[str, Any], first: Result, t0: float, seconds: float) -> tuple[str, dict[str, Any]]:
+    """Return what a second run by tolerances is, and its settings, after a first one from t0 that took so many seconds."""
+    other = dict(settings)
+    rtol, atol = first._tolerances
+    factor = _lieflow.other_tolerance(rtol, atol)
+    found_by = f"a second run at {'a tenth of' if factor < 1 else 'ten times'} the tolerance"
+    # Short steps see what steps by error pass over, such as a pulse.
+    short = abs(first.t_end - t0) / _lieflow.SHORT_STEPS
+    if short > (settings["min_step"] or 0.0) and _lieflow.time_to_search(first.nsteps, seconds) is not None:
+        found_by += f", in at least {_lieflow.SHORT_STEPS} steps"
+        other["max_step"] = min(settings["max_step"] or short, short)
+        other["first_step"] = settings["first_step"] and min(settings["first_step"], short)
+    if first._hardest is not None:
+        # A pulse that the first run has found. f need not jump there.
+        other["kinks"] = [*settings["kinks"], first._hardest]
+    return found_by, {**other, "rtol": rtol * factor, "atol": atol * factor}
