@@ -23,7 +23,7 @@
 //! | `quadrature` | | nodes and weights |
 //! | `elliptic` | | Carlson's integrals, Jacobi's functions |
 //! | [`samples`] | | tables of times and values as functions of time |
-//! | [`dense`] | | kernels for matrices: products, LU, exp |
+//! | [`dense`] | | exponentials of matrices: real and complex, in `f32`, and of many at once |
 //! | [`so3`] | | the closed forms on so(3) ≅ ℝ³ |
 //! | [`tolerance`] | | what the error of a step is compared with |
 //! | [`space`] | | the linear space around M, and its metric |

@@ -36,7 +36,7 @@ impl Interpolation {
     pub const ALL: [Interpolation; 3] =
         [Interpolation::Linear, Interpolation::Cubic, Interpolation::MeanRate];
 
-    /// Its name: `linear`, `cubic`, `mean-rate`.
+    /// The name of the interpolation: `linear`, `cubic`, `mean-rate`.
     pub const fn name(self) -> &'static str {
         match self {
             Interpolation::Linear => "linear",

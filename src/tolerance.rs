@@ -7,8 +7,11 @@
 //! |---|---|---|
 //! | of a linear space: a vector, a momentum | ‖error‖ | atol + rtol·‖y‖, in 𝔤; atol + rtol·min(‖y‖, 10 ‖y − y₀‖), in M |
 //! | the same, with an atol for each component | \|error_i\|; in 𝔤 that of the whole part | atol_i + rtol·\|y_i\| |
-//! | of a group: a rotation, a quaternion, a matrix | the angle, in radian (‖e‖ in 𝔤) | atol + rtol |
+//! | of a group: a rotation, a quaternion, a matrix | ‖e‖ in 𝔤, as an angle in radian | atol + rtol |
 //! | any, by [`Rule::PerLength`] | ‖error‖ of all parts together | atol + rtol·(the length of the step) |
+//!
+//! ‖e‖ is the angle in radian on [`So3`](crate::groups::So3) and on unit quaternions. On groups of matrices of any size it is
+//! the Frobenius norm. It is √2 times the angle of a rotation in one plane, so the same rtol is stricter there.
 //!
 //! Methods that estimate the error in M ([`Rk`](crate::methods::Rk), commutator-free methods, step doubling) know how far a
 //! step from y₀ to y moves a part. A part that is near rest, as at a saddle, has a smaller tolerance, because small
@@ -28,7 +31,10 @@ use crate::scalar::{Real, larger, smaller};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Rule {
-    /// The size of the point: the rule of SciPy, DifferentialEquations.jl and diffrax.
+    /// The size of the point, but at most 10 times the length of the step where the error is estimated in M.
+    ///
+    /// The [table](self) has the formulas. SciPy, DifferentialEquations.jl and diffrax take the size of each number. They do
+    /// not look at the length of the step.
     #[default]
     PerStep,
     /// The length of the step: the error of a run is about rtol times the length of its time span.
@@ -216,7 +222,7 @@ impl Tolerance {
         }
     }
 
-    /// The same tolerances with another rule. [`Rule::PerLength`] takes one rtol and one atol for all parts.
+    /// Sets the rule: what rtol is relative to. [`Rule::PerLength`] takes one rtol and one atol for all parts.
     pub fn by(self, rule: Rule) -> Self {
         Tolerance { rule, ..self }
     }

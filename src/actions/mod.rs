@@ -134,7 +134,7 @@ pub trait Action<G: LieGroup>: Send + Sync {
 
     /// q ← λ_p(u) = Λ(Ψ(u), p), equation (6).
     ///
-    /// The argument `psi` has u, and Ψ(u) is not yet computed. An action on vectors calls [`PsiOf::on`], which needs no
+    /// The argument `psi_u` has u, and Ψ(u) is not yet computed. An action on vectors calls [`PsiOf::on`], which needs no
     /// group element.
     ///
     /// # Errors

@@ -27,7 +27,17 @@ pub struct MapInfo {
     pub groups: Groups,
     /// Is Ψ(−u) = Ψ(u)⁻¹, with dΨ⁻¹ to rounding ([`OddMap`](crate::methods::OddMap))?
     pub odd: bool,
+    /// Is det Ψ(u) = 1 for each u without a trace? Else runs on SL(n) and SU(n), n > 2, leave det = 1 by the error of the method.
+    pub keeps_det: bool,
     map: NamedMap,
+}
+
+impl MapInfo {
+    /// The groups that the map works on, in words, and where a run leaves them.
+    pub fn groups_in_words(&self) -> String {
+        let leaves = "; on SL(n) and SU(n), n > 2, det = 1 only up to the error";
+        format!("{}{}", self.groups, if self.keeps_det { "" } else { leaves })
+    }
 }
 
 /// The groups that a map works on.
@@ -75,6 +85,7 @@ pub const MAPS: &[MapInfo] = &[
         summary: "canonical coordinates of the first kind; dexp⁻¹ to rounding",
         groups: Groups::All,
         odd: true,
+        keeps_det: true,
         map: NamedMap::Exp(Exp),
     },
     MapInfo {
@@ -82,6 +93,7 @@ pub const MAPS: &[MapInfo] = &[
         summary: "Cayley map (𝟙 − u/2)⁻¹(𝟙 + u/2)",
         groups: Groups::All,
         odd: true,
+        keeps_det: false,
         map: NamedMap::Cay(Cay),
     },
     MapInfo {
@@ -89,6 +101,7 @@ pub const MAPS: &[MapInfo] = &[
         summary: "canonical coordinates of the second kind, ordering 123 (ccskf)",
         groups: Groups::WithOrderedBasis,
         odd: false,
+        keeps_det: true,
         map: NamedMap::Ccsk123(CCSK123),
     },
     MapInfo {
@@ -96,6 +109,7 @@ pub const MAPS: &[MapInfo] = &[
         summary: "canonical coordinates of the second kind, ordering 321 (ccskb)",
         groups: Groups::WithOrderedBasis,
         odd: false,
+        keeps_det: true,
         map: NamedMap::Ccsk321(CCSK321),
     },
     MapInfo {
@@ -103,6 +117,7 @@ pub const MAPS: &[MapInfo] = &[
         summary: "Padé map (𝟙 − u/2 + u²/12)⁻¹(𝟙 + u/2 + u²/12), order 4 of exp",
         groups: Groups::OfRealMatrices,
         odd: false,
+        keeps_det: false,
         map: NamedMap::Pade22(Pade22),
     },
     MapInfo {
@@ -110,6 +125,7 @@ pub const MAPS: &[MapInfo] = &[
         summary: "the orderings 321 and 123 on alternate steps",
         groups: Groups::WithOrderedBasis,
         odd: false,
+        keeps_det: true,
         map: NamedMap::Ccsk(CCSK),
     },
 ];

@@ -72,11 +72,11 @@ pub struct Attempts {
     pub is_kept: bool,
     /// The last attempt.
     pub step: Step<f64>,
-    /// Its end.
+    /// The time at the end of the last attempt.
     pub end: f64,
-    /// The size that was chosen for it: that of the step but for rounding, if a step was accepted.
+    /// The size that was chosen for the last attempt: that of `step` but for rounding, if a step was accepted.
     pub size: f64,
-    /// Its error in units of the tolerance.
+    /// The error of the last attempt in units of the tolerance.
     ///
     /// # Errors
     /// Why the step could not be taken.
@@ -93,9 +93,9 @@ pub struct Attempt<'a, P: Problem> {
     pub tolerance: &'a Tolerance,
     /// The first step.
     pub step: Step<f64>,
-    /// Its end.
+    /// The time at the end of the first step.
     pub end: f64,
-    /// The conditions of the steps after it.
+    /// The conditions of the steps after the first one.
     pub streak: &'a Streak<'a>,
     /// The start of the last accepted step, the start of the attempt, and its end.
     pub points: [&'a mut PointOf<P>; 3],

@@ -204,8 +204,9 @@ impl<'a, P: Problem, M: Method<P>> Interpolant<'a, P, M> {
         self.pieces.len()
     }
 
-    /// The same without a borrow, if the run shares its problem and method
-    /// ([`Solve::shared`](super::Solve::shared)).
+    /// The interpolant without a borrow; `None` if the run borrows its problem or its method.
+    ///
+    /// A run of [`Solve::shared`](super::Solve::shared) borrows neither.
     pub fn into_shared(self) -> Option<Interpolant<'static, P, M>> {
         let Interpolant { problem, method, pieces, t, y } = self;
         match (problem, method) {

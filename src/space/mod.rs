@@ -128,7 +128,7 @@ impl<'a, M: Metric + ?Sized> Gap<'a, M> {
     pub fn relative(e: M::Scalar) -> Self {
         Gap { error: GivenBy::Relative(e), from: None }
     }
-    /// The same error, of a step from this point. A step that moves a part little has a smaller tolerance
+    /// Sets the start of the step whose error this is. A step that moves a part little has a smaller tolerance
     /// ([`tolerance`](crate::tolerance)).
     #[inline]
     pub fn of_step_from(self, from: &'a M) -> Self {

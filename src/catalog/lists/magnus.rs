@@ -80,7 +80,7 @@ pub(super) const LINEAR_TYPE: &[MethodInfo] = &[
     magnus(
         "cayley-magnus4",
         4,
-        "Magnus in Cayley coordinates, order 4",
+        "Magnus in Cayley coordinates, order 4; on SL(n) and SU(n), n > 2, det = 1 only up to the error",
         &[times(2, LinearField), times(1, Cay), times(1, Bracket), times(1, TripleProduct)],
         "Iserles 2001",
         Recipe::CayleyMagnus4,
@@ -88,7 +88,7 @@ pub(super) const LINEAR_TYPE: &[MethodInfo] = &[
     magnus(
         "cayley-magnus6",
         6,
-        "Magnus in Cayley coordinates, order 6",
+        "Magnus in Cayley coordinates, order 6; on SL(n) and SU(n), n > 2, det = 1 only up to the error",
         &[times(3, LinearField), times(1, Cay), times(5, Bracket), times(5, TripleProduct)],
         "Iserles 2001",
         Recipe::CayleyMagnus6,

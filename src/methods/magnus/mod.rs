@@ -7,13 +7,14 @@
 //! |---|---|---|---|---|---|
 //! | [`Magnus4`] | 4 | 2 | 1 | 1 | Iserles, Nørsett 1999 |
 //! | [`Magnus6`] | 6 | 3 | 3 | 1 | Blanes, Casas, Ros 2002 |
-//! | [`Magnus8`] | 8 | 4 | 10 | 1 | the same |
+//! | [`Magnus8`] | 8 | 4 | 10 | 1 | Blanes, Casas, Ros 2000 |
 //! | [`CFM4_2`], [`CFM4_3`] | 4 | 2, 3 | 0 | 2, 3 | Blanes, Moan 2006; Alvermann, Fehske 2011 |
 //! | [`CFM6_5`] | 6 | 3 | 0 | 5 | Alvermann, Fehske 2011 |
 //! | [`CFM8_11`] | 8 | 4 | 0 | 11 | the same |
 //! | [`CayleyMagnus4`], [`CayleyMagnus6`] | 4, 6 | 2, 3 | 1, 5 and as many triple products | 1 cay | Iserles 2001 |
 //!
-//! Preserves: the group, the invariants of the action, and time symmetry. Cost: see the table.
+//! Preserves: the group, the invariants of the action, and time symmetry. On SL(n) and SU(n), n > 2, [`CayleyMagnus4`] and
+//! [`CayleyMagnus6`] leave det = 1 by the error of the method. Cost: see the table.
 //! Source: S. Blanes, F. Casas, J. A. Oteo, J. Ros, The Magnus expansion and some of its
 //! applications, Phys. Rep. 470 (2009).
 //!

@@ -58,7 +58,7 @@ struct TableauEntry {
 
 impl MapEntry {
     fn of(map: &MapInfo) -> Self {
-        MapEntry { name: map.name, summary: map.summary, groups: map.groups.to_string() }
+        MapEntry { name: map.name, summary: map.summary, groups: map.groups_in_words() }
     }
 }
 
@@ -276,10 +276,11 @@ fn advice(wanted: Wanted<'_>, typed: &str) -> Result<String, CliError> {
     let keep = wanted.keep.map_or_else(String::new, |kept| format!(" --keep {}", kept.name()));
     let high = if wanted.fits(model.as_ref(), &"dmv10".parse()?) { ", such as dmv10" } else { "" };
     let more = format!(
-        "`lieflow compare {typed} --error 1e-8{keep}` measures which method is the fastest. Compositions, DMV, Gauss \
-         methods and energy-casimir have no error estimate: with rtol they take each step twice. Give them dt, or take \
-         one of high order{high}. No method here is made for stiff problems: the implicit ones need short \
-         steps there too."
+        "`lieflow compare {typed} --error 1e-8{keep}` measures which method is the fastest. Only pairs (methods with a \
+         tableau such as dop853, and cf43, cf-ls32, magnus43), taylorN and exact estimate their error. With rtol all \
+         other methods take each step once whole and once in two halves. Then compositions, DMV, Gauss methods and \
+         energy-casimir lose what makes them good over long times: give them dt, or take one of high order{high}. No \
+         method here is made for stiff problems: the implicit ones need short steps there too."
     );
     let table = table(["you want", "take", "because"], rows);
     Ok(format!("Take this one\n{table}\n{}", wrap(&more, "")))
@@ -443,12 +444,12 @@ fn tableau_in_words(TableauInfo { name, order, stages, pair, .. }: &TableauInfo)
 }
 
 /// Everything about a map.
-fn map_in_words(MapInfo { name, summary, groups, .. }: &MapInfo) -> String {
+fn map_in_words(map: &MapInfo) -> String {
     let takes = all_methods().filter(|info| info.takes_map()).map(|info| info.name);
     let takes: Vec<_> = takes.collect();
-    let mut text = format!("{name}\n");
-    text += &wrap(&format!("A coordinate map: {summary}."), " ");
-    text += &wrap(&format!("groups: {groups}"), " ");
+    let mut text = format!("{}\n", map.name);
+    text += &wrap(&format!("A coordinate map: {}.", map.summary), " ");
+    text += &wrap(&format!("groups: {}", map.groups_in_words()), " ");
     text += &wrap(&format!("methods that take it: {}", takes.join(", ")), " ");
     text
 }
