@@ -282,7 +282,12 @@ impl Timeline {
             return Step { n, t, h };
         }
         if self.t != self.jumped_at {
-            return Step { n, t: t - MARGIN * unit, h };
+            t -= MARGIN * unit;
+            // Times of a grid that begins far from 0 have the rounding of its start: h may end after `end`.
+            while unit != 0.0 && (t + h - end) * unit.signum() >= 0.0 {
+                t -= (t + h - end) + MARGIN * unit;
+            }
+            return Step { n, t, h };
         }
         // The end of a step of a grid may be a rounding after `end`. Half a unit is no change of a step that is longer than
         // both times, across t = 0.

@@ -8,7 +8,7 @@ use lieflow::groups::{
 use lieflow::maps::{CoordinateMap, Exp};
 use lieflow::methods::commutator_free::{CF4, CF43};
 use lieflow::methods::low_storage::LS32;
-use lieflow::methods::tableau::{DOP853, DOPRI5};
+use lieflow::methods::tableau::{DOP853, DOPRI5, RK4};
 use lieflow::methods::{CommutatorFree, LowStorage, Rk, Rkmk};
 use lieflow::problems::{Flow, Problem};
 use lieflow::{Solve, StepControl};
@@ -47,6 +47,26 @@ fn stops_on_both_sides_of_zero() {
             assert!((end - exact).sin().abs() < 1e-12, "{t0} to {t1}: {end}, expected {exact}");
         }
     }
+}
+
+/// A grid that begins far from 0 has times with the rounding of its start, which is much near 0.
+#[test]
+fn stops_near_zero_in_a_grid_from_afar() {
+    let mut steps = 0;
+    for k in 0..2000 {
+        let x = f64::from(k);
+        let (t0, t1, jump) = (-1.38 - 1e-4 * x, 0.05, 1e-3 * (0.7 * x).sin());
+        let problem = spin(move |t| if t < jump { 1.0 } else { 50.0 });
+        let method = Rkmk::new(RK4, Exp);
+        let run = Solve::new(&problem, &method, [t0, t1]).dt(0.013).stops([jump]).run(V::x());
+        let run = run.expect("a run");
+        let exact = jump - t0 + 50.0 * (t1 - jump);
+        // A stage behind the jump makes up to 0.1.
+        let off = (angle(&run.y) - exact).sin().abs();
+        assert!(off < 1e-12, "{t0}, {jump}: {off}");
+        steps += run.stats.accepted;
+    }
+    assert!(steps > 200_000);
 }
 
 /// At a stop f may have a third value, as sign(0) = 0, or that of the other side, as t ≥ 3 in a run backward.
