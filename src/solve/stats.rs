@@ -243,9 +243,9 @@ fn still_to_take(left: f64, h: f64, by_error: bool) -> String {
 fn reason(source: &Option<StepError>, is_lost: bool) -> String {
     match source {
         Some(error) => error.to_string(),
-        None if is_lost => "t + h is t after rounding, as beside a jump or a pole of f, or where a part and its atol are 0"
-            .into(),
-        None => "the error stays above the tolerance; where atol is 0, a part that is 0 needs one"
+        None if is_lost => "t + h is t after rounding; f may have a jump or a pole near t, or a part is 0 and its atol is 0".into(),
+        None => "the error stays above the tolerance; the tolerance or a least step size may be too strict for f, or a part is 0 \
+                 and its atol is 0"
             .into(),
     }
 }

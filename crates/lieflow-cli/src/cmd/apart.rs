@@ -10,6 +10,7 @@ use lieflow_timing::cpu_seconds;
 use super::shown::{OwnRows, OwnZeros, Shown};
 use super::signs::changes_of_sign;
 use super::watch::Watch;
+use crate::measure::norm;
 use crate::output::Kind;
 
 /// The part of a step at the end of a run where a zero may be of one run only, by rounding.
@@ -248,11 +249,6 @@ impl Apart {
             largest.of_middle = larger(largest.of_middle, in_sizes(size.middle));
         }
     }
-}
-
-/// The length of a vector.
-pub(super) fn norm(values: &[f64]) -> f64 {
-    values.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
 /// The distance from t to the nearest zero of g, to two digits; not a number, if there is none in the time of the run.

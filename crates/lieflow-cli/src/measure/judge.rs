@@ -170,7 +170,8 @@ pub struct Judge<'a> {
     stop: &'a AtomicBool,
 }
 
-fn norm(x: &[f64]) -> f64 {
+/// The length of a vector.
+pub(crate) fn norm(x: &[f64]) -> f64 {
     x.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 

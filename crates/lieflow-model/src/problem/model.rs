@@ -8,7 +8,7 @@ use lieflow::names::same;
 use lieflow::samples::Samples;
 use lieflow::solve::Stops;
 use lieflow::tolerance::Tolerance;
-use lieflow::{Error, RunError, SaveAt, Stats, StepControl, TimeGrid};
+use lieflow::{Error, RunError, SaveAt, Stats, TimeGrid};
 use lieflow_runs::run::{
     CountOnVectors, CurvePlace, Fit, Layer, Orders, Outcome, Plan, RowCurve, Rows, Sink,
     StepByStep, Stepper, Steps, Watcher,
@@ -410,22 +410,6 @@ impl Model {
         sink: &mut Sink<'_>,
     ) -> Result<Stats, RunError> {
         let plan = Plan::new(Steps::Equal(*grid), save.clone());
-        self.drive(method, plan, &mut Rows(sink)).map(|outcome| outcome.stats)
-    }
-
-    /// The same with steps that are chosen by their error.
-    ///
-    /// # Errors
-    /// As [`Solve::run`](lieflow::Solve::run).
-    pub fn adapt(
-        &self,
-        method: &MethodSpec,
-        t_span: [f64; 2],
-        control: &StepControl,
-        sink: &mut Sink<'_>,
-    ) -> Result<Stats, RunError> {
-        let steps = Steps::ByError { t_span, control: control.clone() };
-        let plan = Plan::new(steps, SaveAt::Ends);
         self.drive(method, plan, &mut Rows(sink)).map(|outcome| outcome.stats)
     }
 

@@ -362,6 +362,8 @@ class Field:
             raise TypeError(f"group: a value of type {type(group).__name__}, expected a name, a Group or Parts")
         if samples is not None and not isinstance(samples, Samples):
             raise TypeError(f"samples: a value of type {type(samples).__name__}, expected lieflow.Samples")
+        for name, x in parameters.items():
+            real(name, x)
         # Copies: a later change of an argument has no effect.
         self.group, self.field, self.y, self.samples = group, copy.deepcopy(field), y, samples
         self.let, self.parameters = copy.deepcopy(dict(let or {})), copy.deepcopy(parameters)

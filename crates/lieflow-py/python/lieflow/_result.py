@@ -219,7 +219,8 @@ class Result:
         Of a problem: the largest |value − value at the start| of each invariant, over the output. The start is that of the
         run, also where the output begins later.
     residual : float
-        A power of two above the distances from M that were found when the state was corrected to M, and at the end.
+        A power of two above the distances from M that were found when the state was corrected to M in the run, and at its
+        end. That of y0 is not among them.
     restored : int
         How often the state was corrected to M.
     unsure_steps : int

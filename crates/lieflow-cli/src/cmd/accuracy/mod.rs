@@ -24,10 +24,11 @@ use self::advice::POOR;
 use self::sizes::size;
 use self::unseen::with_rounding;
 use super::apart::{
-    Apart, Beside, ColumnApart, Gap, Largest, Limits, Size, ZerosApart, derived_of, norm, parts_of,
+    Apart, Beside, ColumnApart, Gap, Largest, Limits, Size, ZerosApart, derived_of, parts_of,
 };
 use super::shown::{Choice, Shown};
 use super::watch::Watch;
+use crate::measure::norm;
 use crate::output::{Accuracy, Distance, FoundBy, PartError, RowSample, ShownRows, rough};
 
 /// A run that took longer is not made a second time, but where that is asked for.

@@ -3,8 +3,8 @@
 use lieflow_model::schema::{Component, Observable, Row};
 
 use super::{Check, FEW, OWN};
-use crate::cmd::apart::{Size, norm, parts_of};
-use crate::measure::RETURNS;
+use crate::cmd::apart::{Size, parts_of};
+use crate::measure::{RETURNS, norm};
 use crate::output::RowSample;
 
 /// At so many times between the rows such a part is looked at.
