@@ -331,8 +331,10 @@ impl Timeline {
         }
         let end = grid.time(*done + 1);
         let before = if self.t1 >= self.t { stop < end } else { stop > end };
-        // No step is as short as rounding. And the last stage may be at t + h, a rounding after the end of the step.
-        let rounding = 4.0 * f64::EPSILON * stop.abs().max(end.abs());
+        // No step is as short as rounding, which is that of the start of the grid, too. And the last stage may be at t + h, a
+        // rounding after the end of the step.
+        let largest = stop.abs().max(end.abs()).max(grid.t_span()[0].abs());
+        let rounding = 4.0 * f64::EPSILON * largest;
         let near = stop == end || (stop - end).abs() < rounding;
         let before = before || (near && stop != end);
         let n = self.stats.accepted;

@@ -67,6 +67,18 @@ fn stops_near_zero_in_a_grid_from_afar() {
         steps += run.stats.accepted;
     }
     assert!(steps > 200_000);
+    // A time of the grid that is 0 but for rounding is the stop.
+    let still = spin(|_| 1.0);
+    for h in [0.1, 0.07, 0.01, 0.13, 0.3, 0.02, 0.25, 0.007] {
+        for n in 2..60 {
+            let t0: f64 = format!("{:.6}", -f64::from(n) * h).parse().expect("a number");
+            let method = Rkmk::new(RK4, Exp);
+            let run = Solve::new(&still, &method, [t0, 5.0 * h]).dt(h).stops([0.0]).run(V::x());
+            let stats = run.expect("a run").stats;
+            assert_eq!(stats.accepted, n as u64 + 5, "{t0} by {h}");
+            assert!(stats.smallest_step > 0.999 * h, "{t0} by {h}: {}", stats.smallest_step);
+        }
+    }
 }
 
 /// At a stop f may have a third value, as sign(0) = 0, or that of the other side, as t ≥ 3 in a run backward.
