@@ -244,3 +244,18 @@ def test_series_with_very_many_terms():
         assert np.abs(lf.so3.dexpinv(u, v, q=q) - exact).max() < 1e-15, q
     with pytest.raises(lf.ArgumentError, match="a sum up to q = 40 that is not finite"):
         lf.so3.dexpinv([1e10, 0, 0], [0, 1, 0], q=40)
+
+
+@pytest.mark.filterwarnings("ignore:overflow", "ignore:invalid value")
+def test_results_are_finite():
+    large = 1e200 * np.ones(3)
+    skew = 1e200 * (np.tri(4).T - np.tri(4))
+    for call in (
+        lambda: lf.so3.ad(large, [1e200, 0, 0]), lambda: lf.so3.coad(large, [1e200, 0, 0]),
+        lambda: lf.se3.ad([*large, *large], [1e200, 0, 0, 0, 1e200, 0]), lambda: lf.GL(4).coad(skew, skew[::-1]),
+        lambda: lf.SO(4).ad(skew, skew[::-1, ::-1] + np.diag([1e200], 3) - np.diag([1e200], -3)),
+        lambda: lf.U(2).ad(1e200j * np.array([[1, 2], [2, 3]]), 1e200j * np.array([[0, 1], [1, 2]])),
+        lambda: lf.U(3).coad(1e200j * np.eye(3), 1e200 * np.ones((3, 3))),
+    ):
+        with pytest.raises(lf.ArgumentError, match="result: a number that is not finite"):
+            call()

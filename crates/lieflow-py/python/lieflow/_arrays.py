@@ -149,7 +149,12 @@ def finite(name: str, x: NDArray[Any], tail: int = 0) -> None:
 
 
 def into(found: NDArray[Any], out: NDArray[Any] | None) -> NDArray[Any]:
-    """Return ``out`` with the numbers of ``found``, or ``found`` without it. They may share memory with arguments."""
+    """Return ``out`` with the numbers of ``found``, or ``found`` without it. They may share memory with arguments.
+
+    The arguments were finite: a number that is not is one beyond the range of float64.
+    """
+    if not np.isfinite(found).all():
+        raise ArgumentError("result", "a number that is not finite", "arguments whose products are in the range of float64")
     if out is None:
         return found
     kind = isinstance(out, np.ndarray) and out.dtype == found.dtype and out.shape == found.shape
@@ -192,7 +197,8 @@ def series(ad: Callable[[Any, Any], Any], u: Any, v: Any, q: int) -> Any:
             term = ad(u, term)
             if k == 1 or k % 2 == 0:
                 total = total + baker(k) * term
-    first("u", ~np.isfinite(total).all(-1), f"a sum up to q = {q} that is not finite", "a smaller u, or no q")
+    if not np.isfinite(total).all():
+        raise ArgumentError("u", f"a sum up to q = {q} that is not finite", "a smaller u, or no q")
     return total
 
 

@@ -120,7 +120,7 @@ class Group:
     def ad(self, u: ArrayLike, v: ArrayLike, out: Array | None = None) -> Array:
         """Return ad_u v = uv − vu, shape (..., n, n)."""
         a, b = self._algebra("u", u), self._algebra("v", v)
-        return into(self.project(a @ b - b @ a), out)  # without the rounding off 𝔤
+        return into(self.project(into(a @ b - b @ a, None)), out)  # without the rounding off 𝔤
 
     def coad(self, u: ArrayLike, m: ArrayLike, out: Array | None = None) -> Array:
         """Return ad*_u m = uᵀm − muᵀ, with ⟨m, v⟩ = tr(mᵀv), shape (..., n, n).

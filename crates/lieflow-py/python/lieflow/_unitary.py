@@ -248,7 +248,7 @@ class Unitary:
     def ad(self, u: ArrayLike, v: ArrayLike, out: Complex | None = None) -> Complex:
         """Return ad_u v = uv − vu."""
         a, b = self._algebra("u", u), self._algebra("v", v)
-        return self.project(a @ b - b @ a, out)  # without the rounding off u(n)
+        return self.project(into(a @ b - b @ a, None), out)  # without the rounding off u(n)
 
     def coad(self, u: ArrayLike, m: ArrayLike, out: Complex | None = None) -> Complex:
         """Return ad*_u m = u†m − mu†, with ⟨m, v⟩ = Re tr(m†v).
