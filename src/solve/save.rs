@@ -105,7 +105,7 @@ fn read(owner: &str, bytes: &[u8], words: &mut dyn FnMut(&mut Each<'_>)) -> Resu
     };
     let mut saved = bytes.chunks_exact(8).map(|word| word.try_into().unwrap_or_default());
     if !bytes.len().is_multiple_of(8) || bytes.len() < 24 {
-        return refuse("these are not the bytes of a state, by their number");
+        return refuse("these bytes are no state: a state has another number of bytes");
     }
     if saved.next() != Some(HEADER) {
         return refuse("these bytes do not begin with `lieflow` and this version of the format");
