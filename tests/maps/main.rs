@@ -12,6 +12,7 @@ mod embedding;
 mod expm;
 mod expm_batch;
 mod expm_complex;
+mod forms;
 mod functions;
 mod log;
 mod references;

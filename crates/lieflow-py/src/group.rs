@@ -243,6 +243,8 @@ impl MatrixGroup {
     }
     /// Return the element of 𝔤 that is nearest to each matrix (Frobenius).
     ///
+    /// The first call takes O(n⁶) and n⁴ numbers if M of ``Gm`` is neither symmetric nor skew. Else it takes O(n³).
+    ///
     /// Shapes: (..., n, n); leading axes broadcast. ``out=`` is an array of float64 in C order for the result.
     /// Errors: lieflow.ArgumentError for a shape, or a number that is not finite, with the place of the matrix;
     /// TypeError.

@@ -1,20 +1,19 @@
 //! The form of 𝔤_M for the exact functions of ad_u.
 
-use faer::{Mat, Scale};
-
-use super::sample::{Symmetry, symmetry};
+use super::parts::{Symmetry, has_scalar_part, inverse_of, part, symmetry};
 use super::{Form, MatrixGroup};
-use crate::dense::{AdForm, AdKind, Lu, norm_frobenius};
+use crate::dense::{AdForm, AdKind, norm1};
 
-/// The symmetric or skew part of M replaces M only if its reciprocal condition number is at least this.
-const PART_RCOND: f64 = 1e-6;
+/// A part S of M replaces M only if 1/(‖M‖₁‖S⁻¹‖₁) is at least this. This number is small for a part that is nearly
+/// singular, and for one that is small beside M.
+const PART_REGULAR: f64 = 1e-6;
 
 impl MatrixGroup {
     /// A symmetric or skew form that 𝔤 conserves; none on GL(n).
     ///
-    /// uᵀM + Mu = 0 holds for the symmetric and for the skew part of M. So one of the parts is used if M is neither.
+    /// uᵀM + Mu = 0 holds for the symmetric and for the skew part of M. So one of the parts is used if M is neither: the one
+    /// whose inverse is smaller. Without a regular part there is no form.
     pub(crate) fn ad_form(&self) -> Option<AdForm> {
-        let n = self.n();
         let m = self.m()?;
         match &self.form {
             Form::Free => None,
@@ -29,29 +28,24 @@ impl MatrixGroup {
                 Some(Symmetry::Skew) => {
                     Some(AdForm { kind: AdKind::Symmetric, inverse: inverse.clone(), m })
                 }
-                None => {
-                    let parts = [
-                        (AdKind::Skew, (&m + m.transpose()) * Scale(0.5)),
-                        (AdKind::Symmetric, (&m - m.transpose()) * Scale(0.5)),
-                    ];
-                    parts.into_iter().find_map(|(kind, m)| {
-                        if Lu::rcond(m.as_ref()) < PART_RCOND {
-                            return None;
-                        }
-                        let mut lu = Lu::new(n);
-                        lu.a.copy_from(&m);
-                        lu.factor();
-                        let mut inverse = Mat::identity(n, n);
-                        lu.solve(inverse.as_mut());
-                        Some(AdForm { kind, m, inverse })
+                None => [(AdKind::Skew, Symmetry::Symmetric), (AdKind::Symmetric, Symmetry::Skew)]
+                    .into_iter()
+                    .map(|(kind, symmetry)| {
+                        let m = part(&m, symmetry);
+                        let inverse = inverse_of(&m);
+                        AdForm { kind, m, inverse }
                     })
-                }
+                    .map(|form| (1.0 / (norm1(m.as_ref()) * norm1(form.inverse.as_ref())), form))
+                    // Not for NaN: the inverse of a singular part.
+                    .filter(|(regular, _)| *regular >= PART_REGULAR)
+                    .reduce(|best, next| if next.0 > best.0 { next } else { best })
+                    .map(|(_, form)| form),
             },
         }
     }
 
     /// True if every u ∈ 𝔤 is skew-symmetric, as on SO(n) and on U(m) = G_{𝟙+J}. This is so if the symmetric part of M is
-    /// exactly a multiple of 𝟙.
+    /// exactly a multiple of 𝟙, and not small beside M.
     pub(crate) fn is_skew(&self) -> bool {
         match &self.form {
             Form::Free | Form::Symplectic => false,
@@ -59,11 +53,4 @@ impl MatrixGroup {
             Form::Bilinear { m, .. } => has_scalar_part(m),
         }
     }
-}
-
-/// True if the symmetric part of M is exactly a multiple of 𝟙.
-pub(super) fn has_scalar_part(m: &Mat<f64>) -> bool {
-    let (n, part) = (m.nrows(), (m + m.transpose()) * Scale(0.5));
-    let c = part[(0, 0)];
-    c != 0.0 && norm_frobenius(&(part - Mat::<f64>::identity(n, n) * Scale(c))) == 0.0
 }

@@ -12,6 +12,18 @@ const DETERMINANT: f64 = 1e-10;
 /// The least reciprocal condition number of a start on GL(n): the pivots of a singular matrix are 0, or rounding.
 const PIVOT_MIN: f64 = 1e-30;
 
+/// From this condition number of M on, a residual relative to ‖M‖ does not see the small directions of M. Example: for
+/// M = diag(1, 1, 10⁻¹¹) it does not see u₃₃.
+const SCALED_FROM: f64 = 1e4;
+/// The largest residual behind M⁻¹ that counts as rounding.
+const ROUNDING_MAX: f64 = 0.1;
+
+/// The rounding of M⁻¹(uᵀM + Mu), relative to u, where M is badly scaled.
+pub(super) fn behind_inverse(n: usize, rcond: f64) -> Option<f64> {
+    let rounding = 8.0 * n as f64 * f64::EPSILON / rcond;
+    (rcond * SCALED_FROM < 1.0).then(|| rounding.min(ROUNDING_MAX))
+}
+
 pub(super) fn square(arg: &'static str, x: MatRef<'_, f64>) -> Result<(), Error> {
     match x.nrows() == x.ncols() {
         true => Ok(()),
@@ -77,7 +89,8 @@ impl MatrixGroup {
         }
     }
 
-    /// ‖uᵀM + Mu‖/(‖M‖‖u‖) is at most `tolerance`, or not a number.
+    /// ‖uᵀM + Mu‖/(‖M‖‖u‖) is at most `tolerance`, or not a number. If M is badly scaled, ‖u + M⁻¹uᵀM‖/‖u‖ is, too, where
+    /// it is more than rounding.
     fn belongs(&self, arg: &'static str, u: &Mat<f64>, tolerance: f64) -> Result<(), Error> {
         let scale = u.norm_max();
         if scale > 0.0 {
@@ -87,11 +100,22 @@ impl MatrixGroup {
             if residual > tolerance {
                 return Err(Error::NotInAlgebra { arg, group: self.name(), residual, tolerance });
             }
+            if let (Form::Bilinear { m, inverse }, Some(rounding)) =
+                (self.form(), self.behind_inverse)
+            {
+                let gap = &v + inverse * (v.transpose() * m);
+                let (residual, tolerance) =
+                    (norm_frobenius(&gap) / norm_frobenius(&v), tolerance.max(rounding));
+                if residual > tolerance {
+                    let group = self.name();
+                    return Err(Error::NotInAlgebra { arg, group, residual, tolerance });
+                }
+            }
         }
         Ok(())
     }
 
-    /// ‖uᵀM + Mu‖/‖M‖; 0 on GL(n).
+    /// ‖uᵀM + Mu‖/‖M‖; 0 on GL(n). Runs call it. So it neither allocates nor looks behind M⁻¹.
     fn off_form(&self, u: &Mat<f64>) -> f64 {
         let n = self.n();
         match self.form() {
@@ -183,6 +207,7 @@ impl MatrixGroup {
     /// [`LieGroup::check_member`](crate::groups::LieGroup::check_member). On GL(n) g is refused where a pivot is 0: elements
     /// that a run has grown or damped may be singular to working accuracy.
     pub(super) fn check_start(&self, arg: &'static str, g: &Mat<f64>) -> Result<(), Error> {
+        self.size(arg, g.as_ref())?;
         if matches!(self.form(), Form::Free) {
             let rcond = Lu::rcond(g.as_ref());
             if rcond < PIVOT_MIN {
@@ -213,7 +238,8 @@ impl MatrixGroup {
     ///
     /// # Errors
     /// [`Error::NotSquare`], [`Error::Shape`], [`Error::NotFiniteEntry`], [`Error::Trace`] on SL(n) and SU(n), and
-    /// [`Error::NotInAlgebra`] with the residual ‖uᵀM + Mu‖/(‖M‖‖u‖).
+    /// [`Error::NotInAlgebra`] with the residual ‖uᵀM + Mu‖/(‖M‖‖u‖). If the condition number of M is above 1e4, it may also
+    /// be ‖u + M⁻¹uᵀM‖/‖u‖, whose tolerance is at least the rounding of this number.
     pub fn algebra(&self, u: Mat<f64>) -> Result<AlgebraMatrix, Error> {
         self.algebra_within(u, MEMBERSHIP)
     }
@@ -234,7 +260,8 @@ impl MatrixGroup {
     /// # Errors
     /// [`Error::NotSquare`], [`Error::Shape`], [`Error::NotFiniteEntry`], [`Error::Singular`] on
     /// GL(n), [`Error::Reflection`] on SO(n), [`Error::Determinant`] on SL(n) and SU(n), and
-    /// [`Error::NotOnGroup`] with the residual ‖gᵀMg − M‖/(‖M‖ max(1, ‖g‖²)).
+    /// [`Error::NotOnGroup`] with the residual ‖gᵀMg − M‖/(‖M‖ max(1, ‖g‖²)). If the condition number of M is above 1e4, it may
+    /// also be ‖M⁻¹gᵀMg − 𝟙‖/max(1, ‖g‖²), whose tolerance is at least the rounding of this number.
     pub fn element(&self, g: Mat<f64>) -> Result<GroupMatrix, Error> {
         self.element_within(g, MEMBERSHIP)
     }
@@ -252,6 +279,16 @@ impl MatrixGroup {
                 if residual.is_nan() || residual > tolerance {
                     let group = self.name();
                     return Err(Error::NotOnGroup { arg: "g", group, residual, tolerance });
+                }
+                if let (Form::Bilinear { inverse, .. }, Some(rounding)) =
+                    (self.form(), self.behind_inverse)
+                {
+                    let residual = norm_frobenius(&(inverse * defect)) / size;
+                    let tolerance = tolerance.max(rounding);
+                    if residual.is_nan() || residual > tolerance {
+                        let group = self.name();
+                        return Err(Error::NotOnGroup { arg: "g", group, residual, tolerance });
+                    }
                 }
             }
             _ => {

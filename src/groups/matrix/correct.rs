@@ -16,7 +16,7 @@
 
 use faer::{ColMut, ColRef, Mat};
 
-use super::ad::has_scalar_part;
+use super::parts::{has_scalar_part, symmetry};
 use super::{Form, GroupMatrix, MatrixGroup};
 use crate::dense::{axpy, mul, mul_add, norm_frobenius, scaled_sum};
 use crate::groups::RESIDUAL_MAX;
@@ -68,7 +68,7 @@ pub(super) enum Cosquare {
 impl Cosquare {
     pub(super) fn of(form: &Form) -> Self {
         let Form::Bilinear { m, inverse } = form else { return Cosquare::One };
-        if super::sample::symmetry(m).is_some() {
+        if symmetry(m).is_some() {
             return Cosquare::One;
         }
         let n = m.nrows();

@@ -5,6 +5,8 @@ mod adjoint;
 mod check;
 mod correct;
 mod element;
+mod parts;
+mod project;
 mod sample;
 
 use std::sync::OnceLock;
@@ -15,6 +17,8 @@ pub(crate) use check::finite;
 use correct::Cosquare;
 pub(crate) use correct::correct_length;
 pub use element::{AlgebraMatrix, GroupMatrix};
+use parts::{Symmetry, inverse_of, symmetry, without_rounding};
+use project::Projector;
 
 use super::{LieAlgebra, LieGroup};
 use crate::dense::{self, Lu, RCOND_MIN, antisymmetrise, mul, mul_add};
@@ -58,16 +62,18 @@ pub enum Form {
 pub struct MatrixGroup {
     n: usize,
     form: Form,
-    /// What elements have beside the form.
+    /// The subgroup of the group of the form.
     subgroup: Subgroup,
     name: String,
-    /// An orthonormal basis of 𝔤_M, one vectorised element in each column; only if M needs one.
-    basis: OnceLock<Mat<f64>>,
+    /// The projection onto 𝔤_M; only if M needs more than products.
+    projector: OnceLock<Projector>,
+    /// The relative rounding of a residual behind M⁻¹, if M is badly scaled; else the residual itself is enough.
+    behind_inverse: Option<f64>,
     /// M⁻ᵀM, which decides how elements are corrected.
     cosquare: Cosquare,
 }
 
-/// What elements have beside the form: runs are those of the group of the form, and f keeps them in the subgroup.
+/// A subgroup of the group of the form. Runs are those of the whole group, and f keeps them in the subgroup.
 #[derive(Clone, Copy, Debug, Default)]
 struct Subgroup {
     /// The determinant is 1, that of X + iY where the matrices are complex.
@@ -90,7 +96,8 @@ impl MatrixGroup {
             form,
             subgroup: Subgroup::default(),
             name,
-            basis: OnceLock::new(),
+            projector: OnceLock::new(),
+            behind_inverse: None,
             cosquare,
         })
     }
@@ -140,6 +147,9 @@ impl MatrixGroup {
 
     /// G_M for an invertible real M.
     ///
+    /// A symmetric or skew part of M that is 1e-10 of M or less is taken as rounding and left out: [`m`](Self::m) is without
+    /// it. Example: M = AᵀJA is skew only to rounding. It stays if M without it is nearly singular.
+    ///
     /// # Errors
     /// [`Error::NotSquare`], [`Error::NotFiniteEntry`], [`Error::Singular`] when the reciprocal
     /// condition number of M in the 1-norm is below [`RCOND_MIN`].
@@ -148,16 +158,14 @@ impl MatrixGroup {
         check::finite("M", m.as_ref())?;
         let n = m.nrows();
         Self::new(n, Form::Free, String::new())?;
+        let m = without_rounding(m);
         let rcond = Lu::rcond(m.as_ref());
         if rcond < RCOND_MIN {
             return Err(Error::Singular { arg: "M", rcond, minimum: RCOND_MIN });
         }
-        let mut lu = Lu::new(n);
-        lu.a.copy_from(&m);
-        lu.factor();
-        let mut inverse = Mat::identity(n, n);
-        lu.solve(inverse.as_mut());
-        Self::new(n, Form::Bilinear { m, inverse }, format!("G_M({n})"))
+        let inverse = inverse_of(&m);
+        let group = Self::new(n, Form::Bilinear { m, inverse }, format!("G_M({n})"))?;
+        Ok(MatrixGroup { behind_inverse: check::behind_inverse(n, rcond), ..group })
     }
 
     /// SL(n): GL(n) with determinant 1. exp stays on it; cay does not for n > 2.
@@ -261,6 +269,7 @@ impl LieAlgebra for MatrixGroup {
     fn name(&self) -> String {
         self.name.clone()
     }
+    /// If M is neither symmetric nor skew, the first call takes O(n⁶).
     fn dim(&self) -> usize {
         let n = self.n;
         let of_form = match &self.form {
@@ -268,10 +277,10 @@ impl LieAlgebra for MatrixGroup {
             Form::Free => n * n,
             Form::Identity => n * (n - 1) / 2,
             Form::Symplectic => n * (n + 1) / 2,
-            Form::Bilinear { m, .. } => match sample::symmetry(m) {
-                Some(sample::Symmetry::Symmetric) => n * (n - 1) / 2,
-                Some(sample::Symmetry::Skew) => n * (n + 1) / 2,
-                None => self.basis().ncols(),
+            Form::Bilinear { m, .. } => match symmetry(m) {
+                Some(Symmetry::Symmetric) => n * (n - 1) / 2,
+                Some(Symmetry::Skew) => n * (n + 1) / 2,
+                None => self.projector(m).dim(),
             },
         };
         of_form - usize::from(self.subgroup.is_special)
@@ -345,12 +354,6 @@ impl LieGroup for MatrixGroup {
     }
     fn check_member(&self, g: &GroupMatrix) -> Result<(), Error> {
         self.check_start("y", g)
-    }
-    fn assign(&self, g: &GroupMatrix, out: &mut GroupMatrix) {
-        out.copy_from(&**g);
-    }
-    fn assign_vector(&self, x: &Mat<f64>, y: &mut Mat<f64>) {
-        y.copy_from(x);
     }
     fn is_finite_vector(&self, x: &Mat<f64>) -> bool {
         dense::is_finite(x)

@@ -1,88 +1,20 @@
-//! Random elements, and the projection onto the algebra.
+//! Random elements, and the blocks of U(n) and SU(n).
 
 use faer::linalg::triangular_solve::solve_upper_triangular_in_place;
 use faer::{Mat, MatRef, Par, Side, c64};
 use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
 
+use super::parts::{Symmetry, symmetry};
 use super::{AlgebraMatrix, Form, GroupMatrix, MatrixGroup};
-use crate::dense::{Expm, Structure, norm_frobenius};
+use crate::dense::{Expm, Structure};
 use crate::groups::{Sample, Unitary};
-
-/// Mᵀ = ±M.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Symmetry {
-    Symmetric,
-    Skew,
-}
-
-pub(super) fn symmetry(m: &Mat<f64>) -> Option<Symmetry> {
-    if m.as_ref() == m.transpose() {
-        Some(Symmetry::Symmetric)
-    } else if *m == -m.transpose() {
-        Some(Symmetry::Skew)
-    } else {
-        None
-    }
-}
 
 fn gaussian<R: Rng + ?Sized>(rng: &mut R, rows: usize, cols: usize, sigma: f64) -> Mat<f64> {
     Mat::from_fn(rows, cols, |_, _| sigma * rng.sample::<f64, _>(StandardNormal))
 }
 
 impl MatrixGroup {
-    /// An orthonormal basis of 𝔤_M, vectorised by columns: the null space of u ↦ uᵀM + Mu.
-    /// O(n⁶), once a group.
-    pub(super) fn basis(&self) -> &Mat<f64> {
-        self.basis.get_or_init(|| {
-            let n = self.n;
-            let m = self.m().unwrap_or_else(|| Mat::zeros(n, n));
-            let mut map = Mat::<f64>::zeros(n * n, n * n);
-            for (col, (r, c)) in (0..n).flat_map(|c| (0..n).map(move |r| (r, c))).enumerate() {
-                for k in 0..n {
-                    map[(c + k * n, col)] += m[(r, k)]; // (uᵀM)_ck = u_rc m_rk
-                    map[(k + c * n, col)] += m[(k, r)]; // (Mu)_kc = m_kr u_rc
-                }
-            }
-            // M of full rank and finite: the decomposition exists; without it 𝔤 is taken as {0}.
-            let Ok(svd) = map.svd() else { return Mat::zeros(n * n, 0) };
-            let s = svd.S().column_vector();
-            let cut = 1e-10 * s[0].max(f64::MIN_POSITIVE);
-            let rank = (0..s.nrows()).filter(|&i| s[i] > cut).count();
-            svd.V().subcols(rank, n * n - rank).to_owned()
-        })
-    }
-
-    /// The element of 𝔤 nearest to x in the Frobenius norm. Allocates.
-    pub fn project_algebra(&self, x: MatRef<'_, f64>) -> AlgebraMatrix {
-        let half = faer::Scale(0.5);
-        let nearest = match &self.form {
-            Form::Free => x.to_owned(),
-            Form::Identity => (x - x.transpose()) * half,
-            // For M orthogonal and (skew-)symmetric x ↦ (x − M⁻¹xᵀM)/2 is the orthogonal projection.
-            _ => match (&self.m(), &self.form) {
-                (Some(m), Form::Symplectic) => (x - m.transpose() * x.transpose() * m) * half,
-                (Some(m), Form::Bilinear { inverse, .. }) if is_orthogonal_symmetric(m) => {
-                    (x - inverse * x.transpose() * m) * half
-                }
-                _ => self.project_by_basis(x),
-            },
-        };
-        let mut nearest =
-            if self.subgroup.is_complex { self.blocks(nearest.as_ref()) } else { nearest };
-        if self.subgroup.is_special {
-            let m = if self.subgroup.is_complex { self.n / 2 } else { 0 };
-            let mean = self.trace(nearest.as_ref()) / (self.n - m) as f64;
-            for i in 0..self.n - m {
-                nearest[(m + i, i)] -= mean;
-                if m > 0 {
-                    nearest[(i, m + i)] += mean;
-                }
-            }
-        }
-        AlgebraMatrix::new_unchecked(nearest)
-    }
-
     /// The matrix \[X −Y; Y X\] that is nearest to x.
     pub(super) fn blocks(&self, x: MatRef<'_, f64>) -> Mat<f64> {
         Mat::from_fn(self.n, self.n, |i, j| self.block(x, i, j))
@@ -116,28 +48,6 @@ impl MatrixGroup {
         let m = if self.subgroup.is_complex { self.n / 2 } else { 0 };
         (0..self.n - m).map(|i| u[(m + i, i)]).sum()
     }
-
-    fn project_by_basis(&self, x: MatRef<'_, f64>) -> Mat<f64> {
-        let n = self.n;
-        let basis = self.basis();
-        let mut out = Mat::zeros(n, n);
-        for b in basis.col_iter() {
-            let mut c = 0.0;
-            for k in 0..n * n {
-                c += b[k] * x[(k % n, k / n)];
-            }
-            for k in 0..n * n {
-                out[(k % n, k / n)] += c * b[k];
-            }
-        }
-        out
-    }
-}
-
-fn is_orthogonal_symmetric(m: &Mat<f64>) -> bool {
-    let n = m.nrows();
-    let gap = m.transpose() * m - Mat::<f64>::identity(n, n);
-    symmetry(m).is_some() && norm_frobenius(&gap) <= 4.0 * n as f64 * f64::EPSILON
 }
 
 /// A rotation by Haar's measure: the orthogonal factor of a Gaussian matrix with the signs of R divided out (F. Mezzadri,

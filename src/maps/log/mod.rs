@@ -60,7 +60,8 @@ impl MatrixGroup {
     /// [`Error::NoLogarithm`] with a negative eigenvalue that is not as above, and the reason: there is
     /// no real logarithm at all, none in 𝔤, or it is not decided;
     /// [`Error::Map`] when an iteration does not converge or the result is not finite. Cost: O(n³),
-    /// some 30 products; allocates.
+    /// some 30 products, and that of [`project_algebra`](Self::project_algebra), which is more on G_M with an M that is
+    /// neither symmetric nor skew; allocates.
     pub fn log(&self, g: &GroupMatrix) -> Result<AlgebraMatrix, Error> {
         // A clone: what was made unchecked is checked here.
         let g = self.element_within((**g).clone(), POLAR_MAX)?.into_mat();
