@@ -18,7 +18,7 @@ use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, Par, c64};
 
 use super::product::mul;
-use super::schur::Schur;
+use super::schur::{ONE, Schur, ZERO};
 use crate::error::StepError;
 use crate::scalar::{Ops, tally};
 
@@ -26,8 +26,6 @@ use crate::scalar::{Ops, tally};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct NearlySingular;
 
-const ZERO: c64 = c64::new(0.0, 0.0);
-const ONE: c64 = c64::new(1.0, 0.0);
 /// The degree of the Taylor polynomial of exp for norm ≤ 1: 1/19! is below rounding.
 const TAYLOR: usize = 18;
 

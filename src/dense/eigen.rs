@@ -7,11 +7,9 @@ use faer::linalg::evd::{ComputeEigenvectors, self_adjoint_evd, self_adjoint_evd_
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Col, Mat, Par, c64};
 
-use super::schur::NEGLIGIBLE;
+use super::schur::{NEGLIGIBLE, ONE, ZERO};
 use crate::error::StepError;
 use crate::scalar::{Ops, tally};
-
-const ONE: c64 = c64::new(1.0, 0.0);
 
 /// Workspace for iu = Q Λ Q* with u skew-symmetric or skew-Hermitian.
 pub(crate) struct SkewEigen {
@@ -56,9 +54,13 @@ impl SkewEigen {
         let n = u.nrows();
         fill(&mut self.h, |i, j| c64::new(0.0, u[(i, j)]));
         self.decompose()?;
+        let first = n - self.conjugate_pairs();
         fill(&mut self.h, |i, j| c64::new(v[(i, j)], 0.0));
         // Eigenvalues ascend, so the conjugate of number j is number n − 1 − j.
-        self.multiply(phi, |lambda, j, k| j + k == n - 1 && j != k && isolated(lambda, j))?;
+        let is_pair = |j: usize, k: usize| j + k == n - 1 && j != k;
+        self.multiply(phi, |lambda, j, k| {
+            is_pair(j, k) && (j.max(k) >= first || isolated(lambda, j))
+        })?;
         let h = &self.h;
         tally(|| (Ops::adds(1) + Ops::muls(1)) * (n * n.saturating_sub(1) / 2));
         for j in 0..n {
@@ -108,6 +110,33 @@ impl SkewEigen {
     fn decompose_complex(&mut self, u: &Mat<c64>) -> Result<(), StepError> {
         fill(&mut self.h, |i, j| c64::new(-u[(i, j)].im, u[(i, j)].re));
         self.decompose()
+    }
+
+    /// Makes the eigenvectors of −λ the conjugates of those of λ, if the largest λ are too close to each other for accurate
+    /// eigenvectors. Returns the number of these λ.
+    ///
+    /// An eigenvector of such a λ is one of a cluster, and the decomposition takes any basis of the cluster of −λ. With the
+    /// conjugate basis the component of each pair is 0 again, and QΛQ* is a real skew matrix, as near to u as before. Two λ
+    /// below ½ have no pole at their sum; so the pairs begin at the widest gap there.
+    fn conjugate_pairs(&mut self) -> usize {
+        let SkewEigen { q, lambda, .. } = self;
+        let n = lambda.nrows();
+        let least = n - n / 2;
+        let Some(start) = (least..n).find(|&j| lambda[j].re > 0.5) else { return 0 };
+        if (start..n).all(|j| isolated(lambda, j)) {
+            return 0;
+        }
+        let gap = |j: usize| lambda[j].re - if j == least { 0.0 } else { lambda[j - 1].re };
+        let widest = (least..=start).max_by(|&i, &j| gap(i).total_cmp(&gap(j)));
+        let first = widest.unwrap_or(start);
+        for j in first..n {
+            let pair = n - 1 - j;
+            lambda[pair].re = -lambda[j].re;
+            for i in 0..n {
+                q[(i, pair)] = q[(i, j)].conj();
+            }
+        }
+        n - first
     }
 
     /// h = QΛQ*.
@@ -164,7 +193,7 @@ impl SkewEigen {
         for k in 0..h.ncols() {
             for j in 0..h.nrows() {
                 if absent(lambda, j, k) {
-                    h[(j, k)] = c64::new(0.0, 0.0);
+                    h[(j, k)] = ZERO;
                 } else {
                     let (re, im) = phi(lambda[j].re - lambda[k].re)?;
                     h[(j, k)] *= c64::new(re, im);

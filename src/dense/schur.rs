@@ -9,8 +9,9 @@ use faer::{Mat, c64};
 use crate::error::StepError;
 use crate::scalar::{Ops, tally};
 
-const ZERO: c64 = c64::new(0.0, 0.0);
-const ONE: c64 = c64::new(1.0, 0.0);
+/// 0 and 1 in ℂ.
+pub(super) const ZERO: c64 = c64::new(0.0, 0.0);
+pub(super) const ONE: c64 = c64::new(1.0, 0.0);
 /// The largest number of iterations without deflation; two or three are usual.
 const SWEEPS_MAX: usize = 60;
 /// Entries below this fraction of the largest entry are set to zero.

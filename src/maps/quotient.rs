@@ -2,8 +2,9 @@
 
 use faer::Mat;
 
-use crate::dense::{Lu, RCOND_MIN, is_finite, mul, norm1};
+use crate::dense::{Lu, RCOND_MIN, is_finite, mul, norm_frobenius, norm1};
 use crate::error::StepError;
+use crate::groups::{AlgebraMatrix, Form, MatrixGroup};
 
 /// D(u), D(−u), the LU of D(u), and a product.
 #[derive(Debug)]
@@ -69,6 +70,14 @@ impl Quotient {
         mul(&mut self.product, self.minus.as_ref(), v.as_ref());
         mul(v, self.product.as_ref(), self.plus.as_ref());
     }
+}
+
+/// Above this norm of a skew u a solve loses more than rounding of SO(n): the quotient is put back.
+const NORM_EXACT_SKEW: f64 = 4.0;
+
+/// Is the quotient of u put back on SO(n)?
+pub(super) fn is_put_back(group: &MatrixGroup, u: &AlgebraMatrix) -> bool {
+    matches!(group.form(), Form::Identity) && norm_frobenius(u) > NORM_EXACT_SKEW
 }
 
 /// Is every entry finite?

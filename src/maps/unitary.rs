@@ -61,7 +61,9 @@ impl UnitaryExpAt {
         u: &ComplexMatrix,
         v: &mut ComplexMatrix,
     ) -> Result<(), StepError> {
-        let radius = ad_bound(u)?;
+        group.fits("u", u)?;
+        group.fits("v", v)?;
+        let radius = ad_bound(u, "u in dexp_u(v)")?;
         if radius <= EXACT_FROM {
             self.powers.ad.assign(v);
             self.powers.phi1(group, u, v);
@@ -97,10 +99,14 @@ impl UnitaryExpAt {
     }
 }
 
-/// A bound of ‖ad_u‖ in the Frobenius norm: |λ_j − λ_k| ≤ √2·‖u‖.
-fn ad_bound(u: &ComplexMatrix) -> Result<f64, StepError> {
+/// A bound of ‖ad_u‖ in the Frobenius norm: |λ_j − λ_k| ≤ √2·‖u‖. `what` names u in words.
+fn ad_bound(u: &ComplexMatrix, what: &'static str) -> Result<f64, StepError> {
     let bound = core::f64::consts::SQRT_2 * u.size();
-    if bound.is_finite() { Ok(bound) } else { Err(StepError::NormTooLarge { map: "exp" }) }
+    if bound.is_finite() {
+        return Ok(bound);
+    }
+    finite(u, what)?;
+    Err(StepError::NormTooLarge { map: "exp" })
 }
 
 impl CoordinateMap<Unitary> for Exp {
@@ -122,11 +128,12 @@ impl CoordinateMap<Unitary> for Exp {
     }
     fn psi(
         &self,
-        _: &Unitary,
+        group: &Unitary,
         u: &ComplexMatrix,
         at: &mut UnitaryExpAt,
         g: &mut ComplexMatrix,
     ) -> Result<(), StepError> {
+        group.fits("u", u)?;
         join(u, &mut at.u);
         at.exponential.exp(&at.u, Structure::Skew, &mut at.g)?;
         split(&at.g, g);
@@ -139,7 +146,9 @@ impl CoordinateMap<Unitary> for Exp {
         at: &mut UnitaryExpAt,
         v: &mut ComplexMatrix,
     ) -> Result<(), StepError> {
-        let radius = ad_bound(u)?;
+        group.fits("u", u)?;
+        group.fits("v", v)?;
+        let radius = ad_bound(u, "u in dexp⁻¹")?;
         if radius <= EXACT_FROM {
             at.powers.ad.assign(v);
             at.dexpinv = at.powers.baker(group, u, radius, None, v)?;
@@ -180,6 +189,7 @@ impl CoordinateMap<Unitary> for Cay {
         at: &mut UnitaryCayAt,
         g: &mut ComplexMatrix,
     ) -> Result<(), StepError> {
+        group.fits("u", u)?;
         finite(u, "u in cay(u)")?;
         let norm = u.size();
         if norm > NORM_MAX {
@@ -215,11 +225,12 @@ impl CoordinateMap<Unitary> for Cay {
     }
     fn dpsi_inv(
         &self,
-        _: &Unitary,
+        group: &Unitary,
         _: &ComplexMatrix,
         UnitaryCayAt { minus, plus, product, .. }: &mut UnitaryCayAt,
         v: &mut ComplexMatrix,
     ) -> Result<(), StepError> {
+        group.fits("v", v)?;
         mul_complex(product, minus, v);
         mul_complex(v, product, plus);
         finite(v, "dcay⁻¹")

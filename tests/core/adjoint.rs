@@ -3,11 +3,11 @@
 use faer::Mat;
 use lieflow::actions::Coadjoint;
 use lieflow::groups::{
-    Adjoint, ComplexMatrix, GroupMatrix, MatrixGroup, Sample, So3, Translations, UnitQuaternions,
-    Unitary,
+    Adjoint, AlgebraMatrix, ComplexMatrix, GroupMatrix, MatrixGroup, Sample, So3, Translations,
+    UnitQuaternions, Unitary,
 };
-use lieflow::maps::{CoordinateMap, Exp};
-use lieflow::{Action, LieAlgebra, LieGroup, StepError};
+use lieflow::maps::{Cay, CoordinateMap, Exp, dexp};
+use lieflow::{Action, Error, LieAlgebra, LieGroup, StepError};
 use nalgebra::Vector3;
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
@@ -257,4 +257,59 @@ fn refusals() {
     let huge = gl.algebra(Mat::full(3, 3, 1e308)).expect("u");
     let g = gl.element(Mat::from_fn(3, 3, |i, j| if i == j { 2.0 } else { 1.0 })).expect("g");
     assert!(gl.big_ad(&g, &huge, &mut out).is_err());
+}
+
+/// Matrices of another size are told with their sizes.
+#[test]
+fn other_sizes_are_refused() {
+    let groups = [
+        MatrixGroup::so(3),
+        MatrixGroup::gl(3),
+        MatrixGroup::sl(3),
+        MatrixGroup::indefinite(2, 1),
+        MatrixGroup::gm(faer::mat![[2.0, 1.0, 0.0], [1.0, 3.0, 0.0], [0.0, 0.0, 1.0]]),
+    ];
+    for group in groups.map(|group| group.expect("a group")) {
+        for (rows, cols) in [(2, 2), (4, 3), (4, 4), (0, 0), (3, 2)] {
+            let told = format!("{rows}×{cols}, expected 3×3");
+            let wrong = || Mat::<f64>::zeros(rows, cols);
+            let (g, u) =
+                (GroupMatrix::new_unchecked(wrong()), AlgebraMatrix::new_unchecked(wrong()));
+            let (one, zero) = (group.identity(), group.zero());
+            let (mut inverse, mut ad, mut coad) = (one.clone(), zero.clone(), wrong());
+            let found = [
+                group.inverse(&g, &mut inverse),
+                group.big_ad(&g, &zero, &mut ad),
+                group.big_ad(&one, &u, &mut ad),
+                group.coad_group(&g, &Mat::zeros(3, 3), &mut coad),
+                group.coad_group(&one, &wrong(), &mut coad),
+            ];
+            for found in found.map(|found| found.expect_err("another size").to_string()) {
+                assert!(found.ends_with(&told), "{}: {found}", group.name());
+            }
+            let member = group.check_member(&g).expect_err("another size").to_string();
+            assert!(member.contains(&format!("{rows}×{cols}")), "{}: {member}", group.name());
+        }
+    }
+    let group = Unitary::new(3).expect("U(3)");
+    for n in [0, 2, 4] {
+        let (x, mut out) = (ComplexMatrix::zeros(n, n), group.identity());
+        let (one, mut zero) = (group.identity(), group.zero());
+        let found = [
+            group.inverse(&x, &mut out).map_err(Error::from),
+            group.big_ad(&x, &one, &mut out).map_err(Error::from),
+            group.big_ad(&one, &x, &mut out).map_err(Error::from),
+            Exp.eval(&group, &x).map(drop),
+            Cay.eval(&group, &x).map(drop),
+            Exp.eval_dpsi_inv(&group, &x, &zero).map(drop),
+            Exp.eval_dpsi_inv(&group, &zero, &x).map(drop),
+            Cay.eval_dpsi_inv(&group, &zero, &x).map(drop),
+        ];
+        for found in found.map(|found| found.expect_err("another size").to_string()) {
+            assert!(found.ends_with(&format!("{n}×{n}, expected 3×3")), "{found}");
+        }
+        zero.re[(0, 1)] = f64::NAN;
+        let message = dexp(&group, &zero, &group.zero()).expect_err("NaN").to_string();
+        assert!(message.starts_with("u in dexp_u(v) is not finite"), "{message}");
+    }
 }

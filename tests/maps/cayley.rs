@@ -210,3 +210,43 @@ fn pade_is_of_order_4_and_the_same_on_both_layers() {
     let w = Pade22.eval_dpsi_inv(&so4, &planes(12f64.sqrt(), 1.0), &v).expect("dΨ⁻¹");
     assert!(w.norm_l2() < 20.0 * v.norm_l2());
 }
+
+/// A solve loses the group to rounding where u is large. On SO(n) the quotients are put back, up to norms where no digit is
+/// left.
+#[test]
+fn large_turns_stay_on_the_group() {
+    let mut rng = Pcg64::seed_from_u64(21);
+    for n in [3, 4, 5, 17] {
+        let group = MatrixGroup::so(n).expect("SO(n)");
+        for size in [3.9, 4.1, 30.0, 220.0, 2.3e4, 1.4e6, 3.2e7] {
+            let v = group.sample_algebra(&mut rng, 1.0);
+            let mut u = group.zero();
+            group.axpy(size / v.norm_l2(), &v, &mut u);
+            let x = group.sample_vector(&mut rng);
+            macro_rules! check {
+                ($($map:expr),*) => {$({
+                    let (map, mut y) = ($map, x.clone());
+                    let g = map.eval(&group, &u).expect("a map");
+                    let defect = (g.transpose() * &*g - Mat::<f64>::identity(n, n)).norm_l2();
+                    let bound = 8.0 * (n as f64).sqrt() * f64::EPSILON;
+                    assert!(defect <= bound, "{} at {size:e}, n = {n}: {defect:e}", stringify!($map));
+                    let mut at = CoordinateMap::<MatrixGroup>::at(&map, &group).expect("storage");
+                    map.psi_on(&group, &u, &mut at, &mut group.identity(), &x, &mut y).expect("g·x");
+                    let off = (&y - &*g * &x).norm_l2();
+                    assert!(off <= 1e-13 * x.norm_l2(), "{} at {size:e}: {off:e}", stringify!($map));
+                    // What is stored is of the same u.
+                    let mut w = v.clone();
+                    let found = map.dpsi_inv(&group, &u, &mut at, &mut w).map(|()| w);
+                    let again = map.eval_dpsi_inv(&group, &u, &v);
+                    assert_eq!(found.map_err(Error::from), again, "{} at {size:e}", stringify!($map));
+                })*};
+            }
+            check![Cay, Pade22];
+        }
+        let mut u = group.sample_algebra(&mut rng, 1.0);
+        let scale = 1e9 / u.norm_l2();
+        u.col_iter_mut().for_each(|column| column.iter_mut().for_each(|x| *x *= scale));
+        let message = Pade22.eval(&group, &u).expect_err("too large").to_string();
+        assert!(message.contains("the norm of the argument is too large"), "{message}");
+    }
+}

@@ -241,3 +241,48 @@ fn remainder_of_the_cut_series() {
         assert!(cut.remainder >= 0.0, "q = {q}: {}", cut.remainder);
     }
 }
+
+/// Eigenvalues that are close to each other have no accurate eigenvectors. On so(n) twice such an eigenvalue is none of ad_u,
+/// also where it is 2πi, and only sums of two of them count.
+#[test]
+fn clusters_at_half_a_turn() {
+    let mut rng = Pcg64::seed_from_u64(15);
+    let angles: [&[f64]; 8] = [
+        &[PI, PI + 1e-7],
+        &[PI, PI + 1e-4],
+        &[1000.0, PI, PI + 9e-4],
+        &[1e5, PI, PI + 0.05],
+        &[1e7, PI],
+        &[3.0 * PI + 0.2, PI, PI + 1e-6, 0.1, 0.1],
+        &[0.3, 0.3 + 1e-9, PI + 0.1, PI + 0.1 + 1e-9, 2e-9],
+        &[2.0, 2.0, 2.0],
+    ];
+    for angles in angles {
+        for n in [2 * angles.len(), 2 * angles.len() + 1] {
+            let group = MatrixGroup::so(n).expect("SO(n)");
+            let mut block = Mat::zeros(n, n);
+            for (k, &angle) in angles.iter().enumerate() {
+                (block[(2 * k + 1, 2 * k)], block[(2 * k, 2 * k + 1)]) = (angle, -angle);
+            }
+            let turn = group.sample_element(&mut rng);
+            let u = group.project_algebra((&*turn * &block * turn.transpose()).as_ref());
+            // The eigenvalues ±i(α ± β) of ad_u, and ±iα for odd n.
+            let sums = (0..angles.len())
+                .flat_map(|j| (0..j).flat_map(move |k| [(j, k, 1.0), (j, k, -1.0)]));
+            let mut thetas: Vec<f64> = sums.map(|(j, k, s)| angles[j] + s * angles[k]).collect();
+            thetas.extend(angles.iter().filter(|_| n % 2 == 1));
+            let away =
+                |theta: &f64| (theta.abs() - TAU * (theta.abs() / TAU).round().max(1.0)).abs();
+            let distance = thetas.iter().map(away).fold(TAU, f64::min);
+            let size = group.norm(&u);
+            let v = group.sample_algebra(&mut rng, 1.0);
+            let w = Exp
+                .eval_dpsi_inv(&group, &u, &v)
+                .unwrap_or_else(|e| panic!("{angles:?}, {n}: {e}"));
+            let back = dexp(&group, &u, &w).expect("dexp");
+            let gap = (back.as_ref() - v.as_ref()).norm_l2() / v.norm_l2();
+            let bound = 100.0 * EPS * (1.0 + size * (1.0 + 1.0 / distance));
+            assert!(gap <= bound, "{angles:?}, {n}: {gap:e}, expected {bound:e}");
+        }
+    }
+}

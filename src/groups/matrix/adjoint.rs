@@ -34,6 +34,7 @@ impl Adjoint for MatrixGroup {
         InvertingWork { product, lu }: &mut InvertingWork,
         out: &mut GroupMatrix,
     ) -> Result<(), StepError> {
+        self.fits("g", g)?;
         match self.form() {
             Form::Identity => out.copy_from(g.transpose()),
             // −JgᵀJ: blocks \[a b; c d\] become \[dᵀ −bᵀ; −cᵀ aᵀ\].
@@ -76,6 +77,7 @@ impl Adjoint for MatrixGroup {
         u: &AlgebraMatrix,
         out: &mut AlgebraMatrix,
     ) -> Result<(), StepError> {
+        self.fits("u", u)?;
         let (mut inverse, mut product) = (self.identity(), Mat::zeros(self.n(), self.n()));
         self.inverse(g, &mut inverse)?;
         mul(&mut product, g.as_ref(), u.as_ref());
@@ -95,6 +97,7 @@ impl Adjoint for MatrixGroup {
         m: &Mat<f64>,
         out: &mut Mat<f64>,
     ) -> Result<(), StepError> {
+        self.fits("m", m)?;
         let (mut inverse, mut product) = (self.identity(), Mat::zeros(self.n(), self.n()));
         self.inverse(g, &mut inverse)?;
         mul(&mut product, g.transpose(), m.as_ref());

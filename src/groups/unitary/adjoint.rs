@@ -30,6 +30,7 @@ impl Adjoint for Unitary {
         (): &mut (),
         out: &mut ComplexMatrix,
     ) -> Result<(), StepError> {
+        self.fits("g", g)?;
         out.re.copy_from(g.re.transpose());
         out.im.copy_from(g.im.transpose());
         out.im.col_iter_mut().for_each(|col| col.iter_mut().for_each(|x| *x = -*x));
@@ -44,6 +45,8 @@ impl Adjoint for Unitary {
         u: &ComplexMatrix,
         out: &mut ComplexMatrix,
     ) -> Result<(), StepError> {
+        self.fits("g", g)?;
+        self.fits("u", u)?;
         let mut product = self.zero();
         mul_complex(&mut product, g, u);
         mul_adjoint_skew(out, &product, g);
@@ -55,6 +58,8 @@ impl Adjoint for Unitary {
         m: &ComplexMatrix,
         out: &mut ComplexMatrix,
     ) -> Result<(), StepError> {
+        self.fits("g", g)?;
+        self.fits("m", m)?;
         let mut product = self.zero();
         adjoint_mul_complex(&mut product, g, m);
         mul_skew(out, &product, g);

@@ -17,13 +17,13 @@ pub use matrix::ComplexMatrix;
 use matrix::adjoint_mul_complex;
 pub(crate) use matrix::{minus_adjoint, mul_adjoint_skew, mul_complex};
 
-use faer::c64;
+use faer::{Mat, c64};
 use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
 
 use super::correct_length;
 use super::{LieAlgebra, LieGroup, MEMBERSHIP, RESIDUAL_MAX, Sample};
-use crate::error::Error;
+use crate::error::{Error, StepError};
 use crate::scalar::{Ops, larger, tally};
 use crate::space::{LinearSpace, Metric};
 
@@ -113,6 +113,11 @@ impl LieAlgebra for Unitary {
 }
 
 impl Unitary {
+    /// Is x, an argument of a map, n×n?
+    pub(crate) fn fits(&self, arg: &'static str, x: &ComplexMatrix) -> Result<(), StepError> {
+        let check = |part: &Mat<f64>| StepError::check_shape(arg, part.shape(), (self.n, self.n));
+        x.parts().into_iter().try_for_each(check)
+    }
     fn shape(&self, arg: &'static str, x: &ComplexMatrix, cols: usize) -> Result<(), Error> {
         for part in x.parts() {
             if (part.nrows(), part.ncols()) != (self.n, cols) {
@@ -132,12 +137,6 @@ impl LieGroup for Unitary {
 
     fn identity(&self) -> ComplexMatrix {
         ComplexMatrix::identity(self.n)
-    }
-    fn assign(&self, g: &ComplexMatrix, out: &mut ComplexMatrix) {
-        out.assign(g);
-    }
-    fn assign_vector(&self, x: &ComplexMatrix, y: &mut ComplexMatrix) {
-        y.assign(x);
     }
     fn compose(&self, a: &ComplexMatrix, b: &ComplexMatrix, out: &mut ComplexMatrix) {
         mul_complex(out, a, b);

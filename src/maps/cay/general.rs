@@ -7,7 +7,7 @@ use crate::dense::{Lu, mul, norm_frobenius, orthogonalise, scaled_sum};
 use crate::error::{Error, RCOND_MIN, StepError};
 use crate::groups::{AlgebraMatrix, Form, GroupMatrix, MatrixGroup};
 use crate::maps::CoordinateMap;
-use crate::maps::quotient::{Quotient, finite, well_conditioned};
+use crate::maps::quotient::{Quotient, finite, is_put_back, well_conditioned};
 
 /// The values that cay stores at u ∈ 𝔤 ⊂ gl(n): 𝟙 ± u/2, and the LU of 𝟙 − u/2.
 #[derive(Debug)]
@@ -38,13 +38,6 @@ impl CayAt {
 
 /// Above this norm of a skew u no digit of cay(u) has a meaning in the dense arithmetic.
 const NORM_MAX_SKEW: f64 = 1e15;
-/// Above this norm of a skew u the result is put back on SO(n).
-const NORM_EXACT_SKEW: f64 = 4.0;
-
-/// Has the solve lost more than rounding of the group?
-fn is_put_back(group: &MatrixGroup, u: &AlgebraMatrix) -> bool {
-    matches!(group.form(), Form::Identity) && norm_frobenius(u) > NORM_EXACT_SKEW
-}
 
 impl CoordinateMap<MatrixGroup> for Cay {
     type At = CayAt;

@@ -3,16 +3,18 @@
 use faer::Mat;
 
 use super::Pade22;
-use crate::dense::{AdSchur, mul, norm_frobenius, scaled_sum};
+use crate::dense::{AdSchur, mul, norm_frobenius, orthogonalise, scaled_sum};
 use crate::error::{Error, StepError};
-use crate::groups::{AlgebraMatrix, GroupMatrix, LieAlgebra, MatrixGroup};
+use crate::groups::{AlgebraMatrix, Form, GroupMatrix, LieAlgebra, MatrixGroup};
 use crate::maps::CoordinateMap;
-use crate::maps::quotient::{Quotient, finite};
+use crate::maps::quotient::{Quotient, finite, is_put_back};
 
 /// Doubling converges fast up to this ‖u‖².
 const DOUBLING_MAX: f64 = 3.0;
 /// dΨ counts as singular where |1 − λ_jλ_k/12| is smaller than this times max(1, ‖u‖²).
 const SINGULAR: f64 = 1e-12;
+/// Above this norm of u²/12, for a skew u, no digit of pade22(u) has a meaning: the 𝟙 is lost next to it.
+const SQUARE_MAX_SKEW: f64 = 5e14;
 
 /// The values that the Padé map stores at u ∈ 𝔤 ⊂ gl(n): u²/12, D(±u), the LU of D(u), and workspace.
 #[derive(Debug)]
@@ -30,11 +32,18 @@ impl Pade22At {
         let Pade22At { quotient, square, .. } = self;
         mul(&mut quotient.product, u.as_ref(), u.as_ref());
         scaled_sum(square, [1.0 / 12.0], [&quotient.product], 0.0);
-        if !norm_frobenius(square).is_finite() {
+        let is_skew = matches!(group.form(), Form::Identity);
+        let norm = norm_frobenius(square);
+        if !norm.is_finite() || (is_skew && norm > SQUARE_MAX_SKEW) {
             return Err(StepError::NormTooLarge { map: "pade22" });
         }
         scaled_sum(&mut quotient.minus, [-0.5, 1.0], [u, square], 1.0);
         scaled_sum(&mut quotient.plus, [0.5, 1.0], [u, square], 1.0);
+        if is_skew {
+            // The eigenvalues 1 − iα/2 − α²/12 of D(u) are at least 1 in size.
+            quotient.factor_regular();
+            return Ok(());
+        }
         quotient.factor("pade22", "𝟙 − u/2 + u²/12")
     }
 }
@@ -62,17 +71,26 @@ impl CoordinateMap<MatrixGroup> for Pade22 {
         g: &mut GroupMatrix,
     ) -> Result<(), StepError> {
         at.prepare(group, u)?;
-        at.quotient.form("pade22(u)", g)
+        at.quotient.form("pade22(u)", g)?;
+        if is_put_back(group, u) {
+            orthogonalise(g, [&mut at.quotient.product, &mut at.power]);
+        }
+        Ok(())
     }
     fn psi_on(
         &self,
         group: &MatrixGroup,
         u: &AlgebraMatrix,
         at: &mut Pade22At,
-        _: &mut GroupMatrix,
+        g: &mut GroupMatrix,
         x: &Mat<f64>,
         y: &mut Mat<f64>,
     ) -> Result<(), StepError> {
+        if group.fits("u", u).is_ok() && is_put_back(group, u) {
+            self.psi(group, u, at, g)?;
+            mul(y, g.as_ref(), x.as_ref());
+            return Ok(());
+        }
         at.prepare(group, u)?;
         at.quotient.on("pade22(u)·x", x, y)
     }
