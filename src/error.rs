@@ -230,6 +230,38 @@ impl Error {
     ) -> Self {
         Error::OutOfRange { arg: arg.into(), value, expected: expected.into() }
     }
+
+    /// `value`, if it is finite.
+    pub(crate) fn finite(arg: impl Into<String>, value: f64) -> Result<f64, Error> {
+        match value.is_finite() {
+            true => Ok(value),
+            false => Err(Error::out_of_range(arg, value, "a finite number")),
+        }
+    }
+
+    /// `value`, if it is finite and positive.
+    pub(crate) fn positive(arg: impl Into<String>, value: f64) -> Result<f64, Error> {
+        match value.is_finite() && value > 0.0 {
+            true => Ok(value),
+            false => Err(Error::out_of_range(arg, value, "a finite number > 0")),
+        }
+    }
+
+    /// `value`, if it is finite and not negative.
+    pub(crate) fn not_negative(arg: impl Into<String>, value: f64) -> Result<f64, Error> {
+        match value.is_finite() && value >= 0.0 {
+            true => Ok(value),
+            false => Err(Error::out_of_range(arg, value, "a finite number ≥ 0")),
+        }
+    }
+
+    /// Checks that all numbers of a list are finite.
+    pub(crate) fn all_finite(arg: &str, values: &[f64]) -> Result<(), Error> {
+        match values.iter().position(|x| !x.is_finite()) {
+            Some(i) => Error::finite(format!("{arg}[{i}]"), values[i]).map(drop),
+            None => Ok(()),
+        }
+    }
 }
 
 /// Why a step could not be taken. It is small and `Copy`, because it is returned from the inner loop.
@@ -325,6 +357,12 @@ pub enum StepError {
 }
 
 impl StepError {
+    /// Ok if `is_finite`, else an error that says `what` is not finite.
+    #[inline(always)]
+    pub(crate) const fn finite(is_finite: bool, what: &'static str) -> Result<(), StepError> {
+        if is_finite { Ok(()) } else { Err(StepError::NotFinite { what }) }
+    }
+
     /// Is this size, rows×columns, the one that `arg` should have?
     #[cfg(feature = "dense")]
     pub(crate) fn check_shape(

@@ -173,8 +173,7 @@ pub fn same(a: &str, b: &str) -> bool {
 
 /// The name that `given` spells, as it stands among these.
 pub fn find<'a>(given: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    let given = plain(given);
-    names.into_iter().find(|name| plain(name) == given)
+    names.into_iter().find(|name| same(name, given))
 }
 
 /// The name that was meant: another spelling, a name of another program, or the closest one where it is close.

@@ -144,10 +144,8 @@ impl Samples {
             let expected = "at least 2".into();
             return Err(Error::Length { arg: "times".into(), found: n, expected });
         }
+        Error::all_finite("times", times)?;
         for (k, &t) in times.iter().enumerate() {
-            if !t.is_finite() {
-                return Err(Error::out_of_range(format!("times[{k}]"), t, "a finite number"));
-            }
             if k > 0 && t <= times[k - 1] {
                 let expected = format!("more than times[{}] = {}", k - 1, times[k - 1]);
                 return Err(Error::out_of_range(format!("times[{k}]"), t, expected));
@@ -169,10 +167,7 @@ impl Samples {
                     expected: format!("{n} as there are times"),
                 });
             }
-            if let Some(k) = values.iter().position(|x| !x.is_finite()) {
-                let arg = format!("columns[{j}][{k}]");
-                return Err(Error::out_of_range(arg, values[k], "a finite number"));
-            }
+            Error::all_finite(&format!("columns[{j}]"), values)?;
             for (k, piece) in fit(&steps, values, interpolation).into_iter().enumerate() {
                 if !piece.iter().all(|x| x.is_finite()) {
                     let arg = format!("columns[{j}][{}]", k + 1);

@@ -68,21 +68,13 @@ pub struct PartTolerance {
     reach: f64,
 }
 
-/// Is this a tolerance?
-fn tolerance(arg: &'static str, x: f64) -> Result<f64, Error> {
-    match x >= 0.0 && x.is_finite() {
-        true => Ok(x),
-        false => Err(Error::out_of_range(arg, x, "a finite number ≥ 0")),
-    }
-}
-
 impl PartTolerance {
     /// One rtol and one atol.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] for a tolerance that is negative or not finite, and when both are 0.
     pub fn new(rtol: f64, atol: f64) -> Result<Self, Error> {
-        let (rtol, atol) = (tolerance("rtol", rtol)?, tolerance("atol", atol)?);
+        let (rtol, atol) = (Error::not_negative("rtol", rtol)?, Error::not_negative("atol", atol)?);
         if rtol == 0.0 && atol == 0.0 {
             return Err(Error::out_of_range("rtol", rtol, "> 0 when atol is 0"));
         }
@@ -97,7 +89,7 @@ impl PartTolerance {
         let components = atol.into();
         let mut least = f64::INFINITY;
         for &x in &components {
-            least = least.min(tolerance("atol", x)?);
+            least = least.min(Error::not_negative("atol", x)?);
         }
         let least = if components.is_empty() { 0.0 } else { least };
         Ok(PartTolerance { components, ..PartTolerance::new(rtol, least)? })

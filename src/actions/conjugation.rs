@@ -35,9 +35,6 @@ impl Action<MatrixGroup> for Conjugation {
     fn check(&self, group: &MatrixGroup, p: &Mat<f64>) -> Result<(), Error> {
         group.rows_fit("y", p, group.n())
     }
-    fn assign(&self, _: &MatrixGroup, p: &Mat<f64>, q: &mut Mat<f64>) {
-        q.copy_from(p);
-    }
     fn act(
         &self,
         _: &MatrixGroup,

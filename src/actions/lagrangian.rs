@@ -84,9 +84,6 @@ impl Action<MatrixGroup> for Lagrangian {
             false => Ok(()),
         }
     }
-    fn assign(&self, _: &MatrixGroup, p: &Mat<f64>, q: &mut Mat<f64>) {
-        q.copy_from(p);
-    }
     fn act(
         &self,
         _: &MatrixGroup,
@@ -166,9 +163,6 @@ impl Action<MatrixGroup> for Lagrangian {
     ) -> Result<(), StepError> {
         let (group, g) = psi_u.form()?;
         self.act(group, g, p, q, work);
-        match is_finite(q) {
-            true => Ok(()),
-            false => Err(StepError::NotFinite { what: "P" }),
-        }
+        StepError::finite(is_finite(q), "P")
     }
 }

@@ -22,9 +22,6 @@ impl<G: LieGroup> Action<G> for Linear {
     fn check(&self, group: &G, p: &G::Vector) -> Result<(), Error> {
         group.check_vector(p)
     }
-    fn assign(&self, group: &G, p: &G::Vector, q: &mut G::Vector) {
-        group.assign_vector(p, q);
-    }
     #[inline]
     fn act(&self, group: &G, g: &G::Elem, p: &G::Vector, q: &mut G::Vector, _: &mut ()) {
         group.apply(g, p, q);

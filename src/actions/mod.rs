@@ -71,13 +71,6 @@ pub trait Action<G: LieGroup>: Send + Sync {
         self.check(group, p).is_ok()
     }
 
-    /// q ← p, into the existing storage. The default is `clone_from`, which allocates for some storage. The driver calls
-    /// it for points within a step.
-    #[inline]
-    fn assign(&self, _group: &G, p: &Self::Point, q: &mut Self::Point) {
-        q.clone_from(p);
-    }
-
     /// q ← Λ(g, p).
     fn act(
         &self,

@@ -59,10 +59,6 @@ where
     fn is_finite(&self, group: &Product<A, B>, p: &Self::Point) -> bool {
         self.0.is_finite(&group.0, &p.0) && self.1.is_finite(&group.1, &p.1)
     }
-    fn assign(&self, group: &Product<A, B>, p: &Self::Point, q: &mut Self::Point) {
-        self.0.assign(&group.0, &p.0, &mut q.0);
-        self.1.assign(&group.1, &p.1, &mut q.1);
-    }
     #[inline]
     fn act(
         &self,
@@ -164,9 +160,6 @@ impl<G: LieGroup, L: Action<G>> Action<Power<G>> for Each<L> {
     #[inline(always)]
     fn is_finite(&self, group: &Power<G>, p: &Self::Point) -> bool {
         p.iter().all(|p| self.0.is_finite(group.group(), p))
-    }
-    fn assign(&self, group: &Power<G>, p: &Self::Point, q: &mut Self::Point) {
-        p.iter().zip(q).for_each(|(p, q)| self.0.assign(group.group(), p, q));
     }
     #[inline]
     fn act(
@@ -272,9 +265,6 @@ macro_rules! as_the_action {
         #[inline(always)]
         fn is_finite(&self, group: &$Group, p: &Self::Point) -> bool {
             $by.is_finite(group, p)
-        }
-        fn assign(&self, group: &$Group, p: &Self::Point, q: &mut Self::Point) {
-            $by.assign(group, p, q);
         }
         #[inline]
         fn act(

@@ -16,9 +16,6 @@ macro_rules! on_the_group {
         fn check_member(&self, group: &G, p: &G::Elem) -> Result<(), Error> {
             group.check_member(p)
         }
-        fn assign(&self, group: &G, p: &G::Elem, q: &mut G::Elem) {
-            group.assign(p, q);
-        }
         #[inline]
         fn error_ratio(
             &self,

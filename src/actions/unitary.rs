@@ -6,7 +6,6 @@ use super::conjugation::{keep_length, keep_trace};
 use super::{Action, Coadjoint, Conjugation};
 use crate::error::Error;
 use crate::groups::{ComplexMatrix, LieAlgebra, Unitary, mul_adjoint_skew, mul_complex};
-use crate::space::Metric;
 
 /// Λ(g, p) = g p g† on the skew-Hermitian matrices. It conserves the eigenvalues of p.
 impl Action<Unitary> for Conjugation {
@@ -24,9 +23,6 @@ impl Action<Unitary> for Conjugation {
     #[inline]
     fn is_finite(&self, group: &Unitary, p: &ComplexMatrix) -> bool {
         group.is_finite(p)
-    }
-    fn assign(&self, _: &Unitary, p: &ComplexMatrix, q: &mut ComplexMatrix) {
-        q.assign(p);
     }
     fn act(
         &self,
@@ -77,9 +73,6 @@ impl Action<Unitary> for Coadjoint {
     #[inline]
     fn is_finite(&self, group: &Unitary, m: &ComplexMatrix) -> bool {
         group.is_finite(m)
-    }
-    fn assign(&self, group: &Unitary, m: &ComplexMatrix, q: &mut ComplexMatrix) {
-        Conjugation.assign(group, m, q);
     }
     fn act(
         &self,

@@ -54,9 +54,7 @@ impl SymmetricEigen {
         .map_err(|_| StepError::NotConverged { what: "the eigenvalues of a symmetric matrix" })?;
         for j in 0..q.ncols() {
             let value = phi(lambda[j]);
-            if !value.is_finite() {
-                return Err(StepError::NotFinite { what: "a function of an eigenvalue" });
-            }
+            StepError::finite(value.is_finite(), "a function of an eigenvalue")?;
             for (scaled, q) in scaled.col_mut(j).iter_mut().zip(q.col(j).iter()) {
                 *scaled = value * q;
             }

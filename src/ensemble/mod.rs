@@ -118,8 +118,7 @@ impl Ensemble {
                     return Err(Error::out_of_range(arg, j, "a finite number > 0"));
                 }
                 if !m.is_finite() {
-                    let arg = format!("momentum[{i}][{k}]");
-                    return Err(Error::out_of_range(arg, m, "a finite number"));
+                    Error::finite(format!("momentum[{i}][{k}]"), m)?;
                 }
                 block.inverse[k][i % BLOCK] = 1.0 / j;
                 block.state.m[k][i % BLOCK] = m;
@@ -212,9 +211,7 @@ impl Ensemble {
         steps: u64,
         threads: usize,
     ) -> Result<(), Error> {
-        if !h.is_finite() {
-            return Err(Error::out_of_range("h", h, "a finite number"));
-        }
+        Error::finite("h", h)?;
         if threads == 0 {
             return Err(Error::out_of_range("threads", 0.0, "at least 1"));
         }

@@ -185,17 +185,6 @@ pub trait LieGroup: LieAlgebra {
         check_norm(x.size())
     }
 
-    /// out ← g, into the existing storage. The default is `clone_from`, which allocates for some storage.
-    #[inline]
-    fn assign(&self, g: &Self::Elem, out: &mut Self::Elem) {
-        out.clone_from(g);
-    }
-    /// y ← x, like [`assign`](Self::assign).
-    #[inline]
-    fn assign_vector(&self, x: &Self::Vector, y: &mut Self::Vector) {
-        y.clone_from(x);
-    }
-
     /// True if every number in x is finite. A product g·x may overflow although g and x do not. The default looks at ‖x‖. A group
     /// whose products cannot overflow returns true.
     #[inline]

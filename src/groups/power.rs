@@ -55,7 +55,7 @@ impl<G> Power<G> {
         self.copies
     }
 
-    /// True if there are N parts.
+    /// Refuses a list that has not N parts.
     pub(crate) fn check_copies<T>(&self, arg: &'static str, parts: &[T]) -> Result<(), Error> {
         match parts.len() == self.copies {
             true => Ok(()),
@@ -201,12 +201,6 @@ impl<G: LieGroup> LieGroup for Power<G> {
     fn check_vector(&self, x: &Self::Vector) -> Result<(), Error> {
         self.check_copies("y", x)?;
         x.iter().try_for_each(|x| self.group.check_vector(x))
-    }
-    fn assign(&self, g: &Self::Elem, out: &mut Self::Elem) {
-        g.iter().zip(out).for_each(|(g, out)| self.group.assign(g, out));
-    }
-    fn assign_vector(&self, x: &Self::Vector, y: &mut Self::Vector) {
-        x.iter().zip(y).for_each(|(x, y)| self.group.assign_vector(x, y));
     }
     fn is_finite_vector(&self, x: &Self::Vector) -> bool {
         x.iter().all(|x| self.group.is_finite_vector(x))

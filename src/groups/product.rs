@@ -171,16 +171,6 @@ impl<A: LieGroup, B: LieGroup<Scalar = A::Scalar>> LieGroup for Product<A, B> {
         self.0.check_vector(&x.0)?;
         self.1.check_vector(&x.1)
     }
-    #[inline]
-    fn assign(&self, g: &Self::Elem, out: &mut Self::Elem) {
-        self.0.assign(&g.0, &mut out.0);
-        self.1.assign(&g.1, &mut out.1);
-    }
-    #[inline]
-    fn assign_vector(&self, x: &Self::Vector, y: &mut Self::Vector) {
-        self.0.assign_vector(&x.0, &mut y.0);
-        self.1.assign_vector(&x.1, &mut y.1);
-    }
     /// Corrects each part. Returns the larger residual.
     fn correct(&self, g: &mut Self::Elem, [s, t]: [&mut Self::Elem; 2]) -> A::Scalar {
         let first = self.0.correct(&mut g.0, [&mut s.0, &mut t.0]);

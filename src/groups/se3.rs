@@ -63,10 +63,7 @@ type Pair<S> = (Vector3<S>, Vector3<S>);
 /// Both vectors, or an error if they are not finite.
 #[inline]
 pub(crate) fn finite_pair<S: Real>(u: &Pair<S>, what: &'static str) -> Result<(), StepError> {
-    match all_finite(&u.0) && all_finite(&u.1) {
-        true => Ok(()),
-        false => Err(StepError::NotFinite { what }),
-    }
+    StepError::finite(all_finite(&u.0) && all_finite(&u.1), what)
 }
 
 impl<S: Real> LieAlgebra for Se3<S> {
@@ -194,7 +191,7 @@ impl<S: Real> Adjoint for Se3<S> {
         out.0 = g.0.transpose();
         let x = apply3(&out.0, &g.1);
         out.1 = Vector3::new(-x[0], -x[1], -x[2]);
-        if all_finite(&out.1) { Ok(()) } else { Err(StepError::NotFinite { what: "g⁻¹" }) }
+        StepError::finite(all_finite(&out.1), "g⁻¹")
     }
     /// (Rω̂, Rv).
     #[inline]

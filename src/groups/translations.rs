@@ -82,14 +82,6 @@ impl<V: LinearSpace> LieGroup for Translations<V> {
         out.assign(a);
         out.add(V::Scalar::lit(1.0), b);
     }
-    #[inline]
-    fn assign(&self, g: &V, out: &mut V) {
-        out.assign(g);
-    }
-    #[inline]
-    fn assign_vector(&self, x: &V, y: &mut V) {
-        y.assign(x);
-    }
     /// x + g.
     #[inline]
     fn apply(&self, g: &V, x: &V, y: &mut V) {

@@ -107,10 +107,7 @@ pub trait CoordinateMap<G: LieGroup>: Send + Sync {
     ) -> Result<(), StepError> {
         self.psi(group, u, at, g)?;
         group.apply(g, x, y);
-        match group.is_finite_vector(y) {
-            true => Ok(()),
-            false => Err(StepError::NotFinite { what: "Ψ(u)·x" }),
-        }
+        StepError::finite(group.is_finite_vector(y), "Ψ(u)·x")
     }
 
     /// v ← dΨ_u⁻¹ v, at the u of the last [`psi`](Self::psi) or [`psi_on`](Self::psi_on) on `at`.

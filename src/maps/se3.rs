@@ -66,10 +66,7 @@ macro_rules! on_se3 {
                 self.psi(&So3::new(), omega, &mut at.turn, &mut g.0)?;
                 at.x = $translate(omega, v)?;
                 g.1 = at.x;
-                match at.x.iter().all(|x| x.is_finite()) {
-                    true => Ok(()),
-                    false => Err(StepError::NotFinite { what: "Ψ(u)" }),
-                }
+                StepError::finite(at.x.iter().all(|x| x.is_finite()), "Ψ(u)")
             }
             #[inline]
             fn dpsi_inv(

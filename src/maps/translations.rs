@@ -19,10 +19,7 @@ macro_rules! identity_map {
             #[inline]
             fn psi(&self, _: &Translations<V>, u: &V, _: &mut (), g: &mut V) -> Result<(), StepError> {
                 g.assign(u);
-                match g.is_finite() {
-                    true => Ok(()),
-                    false => Err(StepError::NotFinite { what: "the translation" }),
-                }
+                StepError::finite(g.is_finite(), "the translation")
             }
             #[inline]
             fn dpsi_inv(&self, _: &Translations<V>, _: &V, _: &mut (), _: &mut V) -> Result<(), StepError> {

@@ -153,8 +153,7 @@ impl<P: Problem, M: Method<P>> Estimate<P, M> for NoEstimate {
     }
     fn attempt(self, _: &M, _: &P, attempt: Attempt<'_, P>, _: &mut M::Work) -> Attempts {
         let Attempt { step, end, .. } = attempt;
-        let ratio = Err(StepError::NotFinite { what: "the error estimate" });
-        Attempts { accepted: 0, is_kept: false, step, end, size: step.h, ratio }
+        Attempts::without_estimate(step, end)
     }
 }
 

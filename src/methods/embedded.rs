@@ -3,8 +3,8 @@
 //! | method | error | length, for [`Rule::PerLength`] |
 //! |---|---|---|
 //! | [`Rkmk`](super::Rkmk) with a pair | ‖h Σ (b_j − b̂_j) k_j‖ in 𝔤 | ‖v‖ in 𝔤 |
-//! | low storage, Magnus 4(3) | the difference of the last two increments in 𝔤 | Σ ‖u_i‖ in 𝔤 |
-//! | commutator-free, [`Rk`](super::Rk) | the distance of both results in M | the length of the step in M |
+//! | commutator-free, low storage, Magnus 4(3), [`Rk`](super::Rk) | the distance of both results in M | the length of the step in M |
+//! | Lie series, [`Taylor`](super::Taylor) | the last terms of the series, as a number relative to the point | the same |
 //! | any other, by [`Doubling`](super::Doubling) | one step against two halves, in M | the same |
 //!
 //! An error e in 𝔤 is always relative to the point: λ_p(v + e) ≈ Λ(Ψ(e), λ_p(v)).

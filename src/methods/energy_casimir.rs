@@ -118,9 +118,7 @@ impl<P: LiePoisson, Psi: CoordinateMap<P::Group> + OddMap> Method<P> for EnergyC
                 }
             }
         }
-        if !y.is_finite() {
-            return Err(StepError::NotFinite { what: "the state" });
-        }
+        StepError::finite(y.is_finite(), "the state")?;
         core::mem::swap(p, y);
         Ok(())
     }

@@ -309,10 +309,7 @@ impl<'a, const S: usize> Extension<'a, S> {
 
 /// The error of numbers that are not finite.
 fn finite(is: bool) -> Result<(), StepError> {
-    match is {
-        true => Ok(()),
-        false => Err(StepError::NotFinite { what: "the continuous extension" }),
-    }
+    StepError::finite(is, "the continuous extension")
 }
 
 /// The general extension of a step with one increment in one chart: its v/h and k₁, and the extra stages.

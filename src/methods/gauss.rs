@@ -142,7 +142,6 @@ impl<P: Ambient, const S: usize> Method<P> for Gauss<S> {
     fn iterations(&self, work: &Self::Work) -> u64 {
         work.iterations
     }
-    /// True for groups of a quadratic form, which the method conserves to the rounding of the iteration.
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
         Ok(GaussWork {
             k: copies(like.clone()),
@@ -195,9 +194,7 @@ impl<P: Ambient, const S: usize> Method<P> for Gauss<S> {
             }
         }
         z.set_sum(y, h, &tab.b, k);
-        if !z.is_finite() {
-            return Err(StepError::NotFinite { what: "the state" });
-        }
+        StepError::finite(z.is_finite(), "the state")?;
         core::mem::swap(y, z);
         Ok(())
     }

@@ -27,6 +27,7 @@ use crate::groups::LieAlgebra;
 use crate::maps::{Cay, CoordinateMap, Exp, ExpOrCay};
 use crate::problems::{AlgOf, PointOf, Problem, ScalarOf};
 use crate::scalar::Real;
+use crate::space::Metric;
 use crate::tolerance::Scales;
 
 /// Implicit RKMK with its chart at the start of the step.
@@ -227,7 +228,7 @@ macro_rules! method {
                 u: &mut AlgOf<P>,
             ) {
                 if $centred {
-                    problem.action().assign(problem.group(), &work.q, base);
+                    base.assign(&work.q);
                 }
                 work.dense.coordinates(&self.extension(), problem.group(), (theta, h), u);
             }

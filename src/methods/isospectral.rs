@@ -319,9 +319,7 @@ where
         }
         let back = p.as_ref().map(|p| &p.stages[0]);
         P::Action::conjugate(&q.stages[0], back, y, half, m);
-        if !m.is_finite() {
-            return Err(StepError::NotFinite { what: "the state" });
-        }
+        StepError::finite(m.is_finite(), "the state")?;
         core::mem::swap(y, m);
         Ok(())
     }

@@ -277,7 +277,7 @@ pub trait Method<P: Problem> {
         work: &mut Self::Work,
         at: &mut PointOf<P>,
     ) -> Result<(), StepError> {
-        problem.action().assign(problem.group(), from, at);
+        at.assign(from);
         self.step(problem, step.part(theta), at, work)
     }
 

@@ -247,9 +247,7 @@ where
         }
         self.increment(alg, h, &table.update);
         let Stages { u, chart, .. } = &mut self.stages;
-        if !alg.is_finite(u) {
-            return Err(StepError::NotFinite { what: "the increment v" });
-        }
+        StepError::finite(alg.is_finite(u), "the increment v")?;
         chart.around(problem, &Exp, n, p).lambda(u, to)
     }
 }

@@ -26,7 +26,7 @@ pub struct RkWork<P: Ambient, const S: usize> {
     z: PointOf<P>,
     extra: [PointOf<P>; EXTRA],
     field: FieldStore<P>,
-    /// Where the last stage of the last step is the first one.
+    /// The last stage of the last step, where it is the first one of the next step.
     known: Known<PointOf<P>>,
 }
 

@@ -83,6 +83,14 @@ pub struct Attempts {
     pub ratio: Result<f64, StepError>,
 }
 
+impl Attempts {
+    /// The attempt of a method that has no estimate of its error.
+    pub(crate) fn without_estimate(step: Step<f64>, end: f64) -> Self {
+        let ratio = Err(StepError::NotFinite { what: "the error estimate" });
+        Attempts { accepted: 0, is_kept: false, step, end, size: step.h, ratio }
+    }
+}
+
 /// Sees the start, the end and the point at the end of a step of a streak. Returns false if the step must be the last one.
 pub type Watch<'w, Y> = dyn FnMut([f64; 2], &Y) -> bool + 'w;
 

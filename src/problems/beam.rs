@@ -21,7 +21,6 @@
 
 use faer::Mat;
 
-use super::rigid_body::check_finite;
 use crate::error::Error;
 use crate::groups::GroupMatrix;
 
@@ -72,8 +71,8 @@ impl Element {
     /// The maps of the planes x and z.
     fn planes(&self) -> Result<[[[f64; 2]; 2]; 2], Error> {
         let planes = |length: f64, kx: f64, kz: f64| {
-            check_finite("length", &[length])?;
-            check_finite("k", &[kx, kz])?;
+            Error::finite("length", length)?;
+            Error::all_finite("k", &[kx, kz])?;
             Ok([plane(length, kx), plane(length, kz)])
         };
         match *self {
@@ -92,7 +91,7 @@ impl Element {
             }
             Element::ThinLens { focal_length } => {
                 let kick = 1.0 / focal_length;
-                check_finite("1/focal_length", &[kick])?;
+                Error::finite("1/focal_length", kick)?;
                 Ok([[[1.0, 0.0], [-kick, 1.0]], [[1.0, 0.0], [kick, 1.0]]])
             }
         }
@@ -142,7 +141,7 @@ pub fn transfer_map(elements: &[Element]) -> Result<GroupMatrix, Error> {
         true => total[i % 2][i / 2][j / 2],
         false => 0.0,
     };
-    check_finite("the map", &total.as_flattened().concat())?;
+    Error::all_finite("the map", &total.as_flattened().concat())?;
     Ok(GroupMatrix::new_unchecked(Mat::from_fn(4, 4, entry)))
 }
 

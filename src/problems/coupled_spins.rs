@@ -160,10 +160,7 @@ impl<S: Real, C: CouplingsAt<S>> CoupledSpins<S, C> {
             let value = i.max(j) as f64;
             return Err(Error::OutOfRange { arg: format!("bonds[{b}].sites"), value, expected });
         }
-        let alpha: f64 = damping.into();
-        if !(alpha.is_finite() && alpha >= 0.0) {
-            return Err(Error::out_of_range("damping", alpha, "a finite number ≥ 0"));
-        }
+        Error::not_negative("damping", damping.into())?;
         Ok(CoupledSpins { group, couplings, damping, at })
     }
 }

@@ -295,10 +295,6 @@ where
     fn check_member(&self, group: &G, p: &Self::Point) -> Result<(), Error> {
         group.check_member(&p.0)
     }
-    fn assign(&self, group: &G, p: &Self::Point, q: &mut Self::Point) {
-        group.assign(&p.0, &mut q.0);
-        Coadjoint.assign(group, &p.1, &mut q.1);
-    }
     #[inline]
     fn act(
         &self,

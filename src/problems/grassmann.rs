@@ -58,11 +58,11 @@ impl SubspaceFlow {
         if x.nrows() != n || k == 0 || k > n {
             let (rows, cols) = (x.nrows(), k);
             let expected_cols = k.clamp(1, n);
-            return Err(Error::Shape { arg: "X", rows, cols, expected_rows: n, expected_cols });
+            return Err(Error::Shape { arg: "x", rows, cols, expected_rows: n, expected_cols });
         }
         for j in 0..k {
             if let Some(row) = (0..n).find(|&i| !x[(i, j)].is_finite()) {
-                return Err(Error::NotFiniteEntry { arg: "X", row, col: j, value: x[(row, j)] });
+                return Err(Error::NotFiniteEntry { arg: "x", row, col: j, value: x[(row, j)] });
             }
         }
         let qr = x.qr();
@@ -74,7 +74,7 @@ impl SubspaceFlow {
             true => Ok(&q * q.transpose()),
             false => {
                 let rcond = if rcond.is_nan() { 0.0 } else { rcond };
-                Err(Error::Singular { arg: "X", rcond, minimum })
+                Err(Error::Singular { arg: "x", rcond, minimum })
             }
         }
     }

@@ -22,7 +22,7 @@
 
 use nalgebra::Vector3;
 
-use super::rigid_body::{check_finite, check_inertia};
+use super::rigid_body::check_inertia;
 use super::{DiscreteGradient, Euler, Hamiltonian, Invariant, Quadratic};
 use crate::error::Error;
 use crate::groups::Se3;
@@ -74,7 +74,7 @@ impl<S: Real> HeavyTop<S> {
     /// [`Error::OutOfRange`] for a moment that is not finite and positive, and a w that is not finite.
     pub fn new(inertia: [f64; 3], weight: [f64; 3]) -> Result<Self, Error> {
         check_inertia(&inertia)?;
-        check_finite("weight", &weight)?;
+        Error::all_finite("weight", &weight)?;
         let length = weight.iter().map(|w| w * w).sum::<f64>().sqrt();
         let equal = |a: f64, b: f64| (a - b).abs() <= ROUNDING * a;
         let is_none = |w: f64| w.abs() <= ROUNDING * length;

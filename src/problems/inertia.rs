@@ -16,18 +16,11 @@ use crate::error::Error;
 /// The rounding error allowed in the triangle inequality, relative to the largest moment.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
-fn positive(arg: &str, x: f64) -> Result<f64, Error> {
-    match x.is_finite() && x > 0.0 {
-        true => Ok(x),
-        false => Err(Error::out_of_range(arg, x, "a finite number > 0")),
-    }
-}
-
 /// `scale`·M (b² + c², a² + c², a² + b²).
 fn of_axes(mass: f64, scale: f64, axes: [f64; 3], name: &str) -> Result<[f64; 3], Error> {
-    let m = scale * positive("mass", mass)?;
+    let m = scale * Error::positive("mass", mass)?;
     for (i, &x) in axes.iter().enumerate() {
-        positive(&format!("{name}[{i}]"), x)?;
+        Error::positive(format!("{name}[{i}]"), x)?;
     }
     let [a, b, c] = axes.map(|x| x * x);
     let moments = [m * (b + c), m * (a + c), m * (a + b)];
@@ -55,8 +48,9 @@ pub fn cuboid(mass: f64, sides: [f64; 3]) -> Result<[f64; 3], Error> {
 /// # Errors
 /// [`Error::OutOfRange`] for a mass, radius or height that is not finite and positive.
 pub fn cylinder(mass: f64, radius: f64, height: f64) -> Result<[f64; 3], Error> {
-    let m = positive("mass", mass)? / 12.0;
-    let (r2, h2) = (positive("radius", radius)?.powi(2), positive("height", height)?.powi(2));
+    let m = Error::positive("mass", mass)? / 12.0;
+    let (r2, h2) =
+        (Error::positive("radius", radius)?.powi(2), Error::positive("height", height)?.powi(2));
     let moments = [m * (3.0 * r2 + h2), m * (3.0 * r2 + h2), 6.0 * m * r2];
     check_inertia(&moments).map(|()| moments)
 }

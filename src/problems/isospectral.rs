@@ -78,7 +78,7 @@ impl IsospectralFlow {
     /// # Errors
     /// As [`MatrixGroup::so`], and [`Error::OutOfRange`] for an entry that is not finite.
     pub fn double_bracket(diagonal: &[f64]) -> Result<Self, Error> {
-        super::rigid_body::check_finite("diagonal", diagonal)?;
+        Error::all_finite("diagonal", diagonal)?;
         let n = diagonal.len();
         let target = Mat::from_fn(n, n, |i, j| if i == j { diagonal[i] } else { 0.0 });
         Ok(IsospectralFlow { group: MatrixGroup::so(n)?, kind: Kind::DoubleBracket(target) })
@@ -191,8 +191,8 @@ pub fn toda_lattice(q: &[f64], p: &[f64]) -> Result<Mat<f64>, Error> {
         let (rows, cols) = (p.len(), 1);
         return Err(Error::Shape { arg: "p", rows, cols, expected_rows: n, expected_cols: 1 });
     }
-    super::rigid_body::check_finite("q", q)?;
-    super::rigid_body::check_finite("p", p)?;
+    Error::all_finite("q", q)?;
+    Error::all_finite("p", p)?;
     let mut b = Vec::with_capacity(n.saturating_sub(1));
     for (i, pair) in q.windows(2).enumerate() {
         let gap = pair[0] - pair[1];

@@ -50,7 +50,7 @@ impl<F: Fn(f64, &Mat<f64>) -> (Vector3<f64>, Vector3<f64>)> ChargedParticle<F> {
     /// # Errors
     /// [`Error::OutOfRange`] for a ratio that is not finite.
     pub fn new(ratio: f64, field: F) -> Result<Self, Error> {
-        super::rigid_body::check_finite("ratio", &[ratio])?;
+        Error::finite("ratio", ratio)?;
         Ok(ChargedParticle { group: MatrixGroup::indefinite(3, 1)?, ratio, field })
     }
 }

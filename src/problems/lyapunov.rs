@@ -13,7 +13,6 @@
 use faer::Mat;
 
 use super::Problem;
-use super::rigid_body::check_finite;
 use crate::actions::LeftTranslation;
 use crate::dense::{antisymmetrise, mul};
 use crate::error::Error;
@@ -71,7 +70,7 @@ impl<F: Fn(f64, &Mat<f64>, &mut Mat<f64>, &mut Mat<f64>)> Lyapunov<F> {
             let (rows, cols) = (x.len(), 1);
             return Err(Error::Shape { arg: "x", rows, cols, expected_rows: n, expected_cols: 1 });
         }
-        check_finite("x", x)?;
+        Error::all_finite("x", x)?;
         let x = Mat::from_fn(n, 1, |i, _| x[i]);
         Ok((self.group.0.identity(), (Mat::zeros(n, 1), x)))
     }

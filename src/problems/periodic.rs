@@ -5,7 +5,6 @@
 //! Hill: ẍ + Q(t)x = 0 is A = \[0 𝟙; −Q 0\] with y = (x, ẋ); Mathieu: Q = a − 2q cos 2t, of period π.
 //! f(t, g) = A(t); Λ(a, g) = ag. Source: NIST DLMF, chapter 28.
 
-use super::rigid_body::check_finite;
 use super::{Flow, LinearFlow};
 use crate::actions::LeftTranslation;
 use crate::error::Error;
@@ -56,7 +55,7 @@ pub fn mathieu(
     a: f64,
     q: f64,
 ) -> Result<LinearHamiltonian<impl Fn(f64, &mut AlgebraMatrix)>, Error> {
-    check_finite("a", &[a])?;
-    check_finite("q", &[q])?;
+    Error::finite("a", a)?;
+    Error::finite("q", q)?;
     hill(1, move |t, _, _| a - 2.0 * q * (2.0 * t).cos())
 }

@@ -8,7 +8,6 @@
 
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
-use super::rigid_body::check_finite;
 use super::{Frame, FreeBody, Invariant, Invariants, Problem, RigidBody, Split};
 use crate::actions::LeftTranslation;
 use crate::error::Error;
@@ -45,7 +44,7 @@ impl RigidBodyQuaternion {
     /// # Errors
     /// As [`RigidBodyAttitude::new`](super::RigidBodyAttitude::new).
     pub fn new(inertia: [f64; 3], momentum_space: [f64; 3]) -> Result<Self, Error> {
-        check_finite("momentum_space", &momentum_space)?;
+        Error::all_finite("momentum_space", &momentum_space)?;
         let body = RigidBody::new(inertia)?;
         Ok(RigidBodyQuaternion { body, momentum_space: momentum_space.into() })
     }

@@ -107,9 +107,7 @@ fn generator<H: Fn(f64, usize, usize) -> [f64; 2]>(
 /// [`Error::OutOfRange`] for numbers that are not finite, and for ψ = 0.
 pub fn amplitudes(psi: &[[f64; 2]]) -> Result<Mat<f64>, Error> {
     let norm = psi.iter().map(|[re, im]| re * re + im * im).sum::<f64>().sqrt();
-    if !(norm.is_finite() && norm > 0.0) {
-        return Err(Error::out_of_range("|ψ|", norm, "a finite number > 0"));
-    }
+    let norm = Error::positive("|ψ|", norm)?;
     let n = psi.len();
     Ok(Mat::from_fn(2 * n, 1, |i, _| psi[i % n][i / n] / norm))
 }
@@ -130,9 +128,7 @@ pub fn density_matrix(
     entry: impl Fn(usize, usize) -> [f64; 2],
 ) -> Result<Mat<f64>, Error> {
     let trace: f64 = (0..n).map(|i| entry(i, i)[0]).sum();
-    if !(trace.is_finite() && trace > 0.0) {
-        return Err(Error::out_of_range("tr ρ", trace, "a finite number > 0"));
-    }
+    Error::positive("tr ρ", trace)?;
     let mut rho = Mat::zeros(2 * n, 2 * n);
     for j in 0..n {
         for i in 0..=j {

@@ -13,7 +13,6 @@
 
 use nalgebra::Vector3;
 
-use super::rigid_body::check_finite;
 use super::{Invariant, Invariants, LiePoisson, MomentumTerms, Problem, TaylorField};
 use crate::actions::{Coadjoint, Linear};
 use crate::error::Error;
@@ -41,7 +40,7 @@ impl SphericalPendulum {
     /// # Errors
     /// [`Error::OutOfRange`] for a number that is not finite.
     pub fn new(gravity_over_length: f64) -> Result<Self, Error> {
-        check_finite("gravity_over_length", &[gravity_over_length])?;
+        Error::finite("gravity_over_length", gravity_over_length)?;
         Ok(SphericalPendulum { rate2: gravity_over_length })
     }
 
@@ -50,12 +49,9 @@ impl SphericalPendulum {
     /// # Errors
     /// [`Error::OutOfRange`] for numbers that are not finite, and for q = 0.
     pub fn state(&self, q: [f64; 3], velocity: [f64; 3]) -> Result<(V, V), Error> {
-        check_finite("q", &q)?;
-        check_finite("velocity", &velocity)?;
-        let length = V::from(q).norm();
-        if !(length > 0.0 && length.is_finite()) {
-            return Err(Error::out_of_range("|q|", length, "a finite number > 0"));
-        }
+        Error::all_finite("q", &q)?;
+        Error::all_finite("velocity", &velocity)?;
+        let length = Error::positive("|q|", V::from(q).norm())?;
         let q = V::from(q) / length;
         Ok((q.cross(&V::from(velocity)), q))
     }
@@ -211,7 +207,7 @@ impl SpinChain {
     /// # Errors
     /// [`Error::OutOfRange`] for a number that is not finite.
     pub fn with_anisotropy(self, anisotropy: f64) -> Result<Self, Error> {
-        check_finite("anisotropy", &[anisotropy])?;
+        Error::finite("anisotropy", anisotropy)?;
         Ok(SpinChain { anisotropy, ..self })
     }
     /// Sets Gilbert's damping α ≥ 0. With α > 0 the energy falls.
@@ -219,17 +215,14 @@ impl SpinChain {
     /// # Errors
     /// [`Error::OutOfRange`] for a number that is not finite or negative.
     pub fn with_damping(self, damping: f64) -> Result<Self, Error> {
-        match damping.is_finite() && damping >= 0.0 {
-            true => Ok(SpinChain { damping, ..self }),
-            false => Err(Error::out_of_range("damping", damping, "a finite number ≥ 0")),
-        }
+        Ok(SpinChain { damping: Error::not_negative("damping", damping)?, ..self })
     }
     /// Sets the field B.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] for numbers that are not finite.
     pub fn with_field(self, field: [f64; 3]) -> Result<Self, Error> {
-        check_finite("field", &field)?;
+        Error::all_finite("field", &field)?;
         Ok(SpinChain { field: field.into(), ..self })
     }
 

@@ -9,7 +9,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::Problem;
-use super::rigid_body::{apply_transpose, check_finite, check_inertia};
+use super::rigid_body::{apply_transpose, check_inertia};
 use crate::actions::LeftTranslation;
 use crate::error::Error;
 use crate::groups::{Adjoint, Product, So3, Translations};
@@ -111,7 +111,7 @@ impl<T: Torque> TorqueBody<T> {
         omega_body: [f64; 3],
     ) -> Result<(Matrix3<f64>, Vector3<f64>), Error> {
         So3::new().check_element("attitude", &attitude, crate::groups::MEMBERSHIP)?;
-        check_finite("omega_body", &omega_body)?;
+        Error::all_finite("omega_body", &omega_body)?;
         let m = self.inertia.component_mul(&Vector3::from(omega_body));
         Ok((attitude, attitude * m))
     }

@@ -12,7 +12,7 @@ use core::f64::consts::FRAC_PI_4;
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-pub(crate) use self::sin_cos::{SIN_COS_MAX, muladd, sin_cos, sin_cos_near_zero};
+pub(crate) use self::sin_cos::{ROUND, SIN_COS_MAX, muladd, sin_cos, sin_cos_near_zero};
 pub use counted::{Counted, Ops};
 pub use double_double::DoubleDouble;
 pub use tally::tally;

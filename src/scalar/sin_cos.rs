@@ -11,7 +11,7 @@ use core::f64::consts::FRAC_2_PI;
 pub(crate) const SIN_COS_MAX: f64 = 1e6;
 
 /// 1.5·2⁵². Adding it rounds to an integer, which is then in the last bits.
-const ROUND: f64 = 6755399441055744.0;
+pub(crate) const ROUND: f64 = 6755399441055744.0;
 /// π/2.
 const HALF_PI: [f64; 3] = [1.5707963267341256, 6.077100506303966e-11, 2.0222662487959506e-21];
 /// (sin √z/√z − 1)/z.

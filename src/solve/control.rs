@@ -23,13 +23,6 @@ pub struct StepControl {
     pub(super) max_steps: u64,
 }
 
-fn positive(arg: &'static str, x: f64) -> Result<f64, Error> {
-    match x > 0.0 && x.is_finite() {
-        true => Ok(x),
-        false => Err(Error::out_of_range(arg, x, "a finite number > 0")),
-    }
-}
-
 impl StepControl {
     /// The largest number of attempts in a run, unless [`max_steps`](Self::max_steps) sets another.
     pub const MAX_STEPS: u64 = 1_000_000;
@@ -63,7 +56,7 @@ impl StepControl {
     /// # Errors
     /// [`Error::OutOfRange`] unless it is finite and positive.
     pub fn first_step(self, h: f64) -> Result<Self, Error> {
-        Ok(StepControl { first_step: Some(positive("first_step", h)?), ..self })
+        Ok(StepControl { first_step: Some(Error::positive("first_step", h)?), ..self })
     }
 
     /// Ends the run with an error below this size. The last two steps to the end of the span, to a stop or to a jump may be
@@ -72,7 +65,7 @@ impl StepControl {
     /// # Errors
     /// [`Error::OutOfRange`] unless it is finite and positive, and at most the largest step.
     pub fn min_step(self, h: f64) -> Result<Self, Error> {
-        StepControl { min_step: positive("min_step", h)?, ..self }.limits("min_step", h)
+        StepControl { min_step: Error::positive("min_step", h)?, ..self }.limits("min_step", h)
     }
 
     /// Sets the largest step size.
@@ -80,7 +73,7 @@ impl StepControl {
     /// # Errors
     /// [`Error::OutOfRange`] unless it is finite and positive, and at least the smallest step.
     pub fn max_step(self, h: f64) -> Result<Self, Error> {
-        StepControl { max_step: positive("max_step", h)?, ..self }.limits("max_step", h)
+        StepControl { max_step: Error::positive("max_step", h)?, ..self }.limits("max_step", h)
     }
 
     /// The largest step size; infinite if none was set.

@@ -57,9 +57,7 @@ const STEPS_MAX: f64 = 1e15;
 
 /// The length of a span. Its ends must not be NaN; the end may be infinite.
 pub(super) fn length_of([t0, t1]: [f64; 2]) -> Result<f64, Error> {
-    if !t0.is_finite() {
-        return Err(Error::out_of_range("t_span[0]", t0, "a finite number"));
-    }
+    Error::finite("t_span[0]", t0)?;
     if t1.is_nan() {
         return Err(Error::out_of_range("t_span[1]", t1, "a number"));
     }
@@ -81,22 +79,26 @@ impl TimeGrid {
     /// so small that t + dt = t, or that makes more than 1e15 steps.
     pub fn new(t_span: [f64; 2], dt: f64) -> Result<Self, Error> {
         let length = length_of(t_span)?;
-        if !(dt.is_finite() && dt > 0.0) {
-            return Err(Error::out_of_range("dt", dt, "a finite number > 0"));
-        }
+        Error::positive("dt", dt)?;
         let [t0, t1] = t_span;
         let h = dt.copysign(t1 - t0);
+        let unresolved = |t: f64| {
+            Error::out_of_range("dt", dt, format!("a step that changes t = {}", Plain(&t)))
+        };
         if length.is_infinite() {
-            return TimeGrid { t0, t1, h, steps: u64::MAX, split: false }.check();
+            return TimeGrid { t0, t1, h, steps: u64::MAX, split: false }.checked(unresolved);
         }
         let steps = (length / dt).round();
         if steps > STEPS_MAX {
             return Err(Error::out_of_range("dt", dt, "at most 1e15 steps over t_span"));
         }
-        if length == 0.0 || (steps >= 1.0 && (length / dt - steps).abs() <= 1e-9 * steps) {
-            return Self::with_steps(t_span, steps as u64);
+        if length == 0.0 {
+            return Ok(TimeGrid::divided(t_span, 0));
         }
-        TimeGrid { t0, t1, h, steps: (length / dt).ceil() as u64, split: false }.check()
+        if steps >= 1.0 && (length / dt - steps).abs() <= 1e-9 * steps {
+            return TimeGrid::divided(t_span, steps as u64).checked(unresolved);
+        }
+        TimeGrid { t0, t1, h, steps: (length / dt).ceil() as u64, split: false }.checked(unresolved)
     }
 
     /// Divides the span into this number of steps.
@@ -106,28 +108,33 @@ impl TimeGrid {
     /// or so many that t + h = t.
     #[doc(alias = "linspace")]
     pub fn with_steps(t_span: [f64; 2], steps: u64) -> Result<Self, Error> {
-        let [t0, t1] = t_span;
-        let length = length_of(t_span)?;
-        if length == 0.0 {
-            return Ok(TimeGrid { t0, t1, h: 0.0, steps: 0, split: false });
+        if length_of(t_span)? == 0.0 {
+            return Ok(TimeGrid::divided(t_span, 0));
         }
-        if length.is_infinite() {
-            return Err(Error::out_of_range("t_span[1]", t1, "a finite number"));
-        }
+        Error::finite("t_span[1]", t_span[1])?;
         if steps == 0 {
             return Err(Error::out_of_range("steps", 0.0, "at least 1"));
         }
-        TimeGrid { t0, t1, h: (t1 - t0) / steps as f64, steps, split: false }.check()
+        TimeGrid::divided(t_span, steps).checked(|_| {
+            let expected = "so few that t + h differs from t";
+            Error::out_of_range("steps", steps as f64, expected)
+        })
     }
 
-    fn check(self) -> Result<Self, Error> {
+    /// The span in equal steps. An empty one has none.
+    fn divided([t0, t1]: [f64; 2], steps: u64) -> Self {
+        let h = if t0 == t1 { 0.0 } else { (t1 - t0) / steps as f64 };
+        TimeGrid { t0, t1, h, steps, split: false }
+    }
+
+    /// The steps, if t + h differs from t at the larger end; `error` of that t otherwise.
+    fn checked(self, error: impl FnOnce(f64) -> Error) -> Result<Self, Error> {
         let far = if self.t1.is_finite() { self.t1.abs() } else { 0.0 };
         let largest = self.t0.abs().max(far);
-        if self.h.abs() < largest - largest.next_down() {
-            let expected = format!("a step that changes t = {}", Plain(&largest));
-            return Err(Error::out_of_range("dt", self.h.abs(), expected));
+        match self.h.abs() < largest - largest.next_down() {
+            true => Err(error(largest)),
+            false => Ok(self),
         }
-        Ok(self)
     }
 
     /// Splits each step in two parts of different size, for a second run that shows the error of one over whole steps.
@@ -229,7 +236,7 @@ pub enum SaveAt {
     End,
     /// At the start and at the end.
     Ends,
-    /// At the start, after every so many steps, and at the end.
+    /// At the start, at each multiple of this number of steps, and at the end.
     Every(u64),
     /// At these times and no others, in the order of the run. They need not be ends of steps.
     Times(Vec<f64>),
@@ -295,10 +302,8 @@ impl SaveAt {
     pub fn check(&self, [t0, t1]: [f64; 2]) -> Result<(), Error> {
         match self {
             SaveAt::Every(0) => Err(Error::out_of_range("every", 0.0, "at least 1")),
-            SaveAt::Interval(length) if !(*length > 0.0 && length.is_finite()) => {
-                Err(Error::out_of_range("interval", *length, "a finite number > 0"))
-            }
             SaveAt::Interval(length) => {
+                Error::positive("interval", *length)?;
                 // Two times that are one number would be shown for ever.
                 let differ = |t: f64| !t.is_finite() || t + length != t;
                 let are_few = !t1.is_finite() || (t1 - t0).abs() / length <= STEPS_MAX;

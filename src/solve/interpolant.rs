@@ -76,9 +76,7 @@ fn chart_curve<P: Problem>(
     let mut values: [AlgOf<P>; COUNT] = core::array::from_fn(|_| group.zero());
     for (j, u) in values.iter_mut().enumerate() {
         coordinates(node(j), &mut base, u);
-        if !group.is_finite(u) {
-            return Err(StepError::NotFinite { what: "the continuous extension" });
-        }
+        StepError::finite(group.is_finite(u), "the continuous extension")?;
     }
     let mut coefficients: [AlgOf<P>; COUNT] = core::array::from_fn(|_| group.zero());
     for (k, c) in coefficients.iter_mut().enumerate() {

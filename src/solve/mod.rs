@@ -194,17 +194,17 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
         self.save(SaveAt::Times(times.into()))
     }
 
-    /// Sets output at the start, after every so many steps, and at the end.
+    /// Sets output at the start, at each multiple of this number of steps, and at the end.
     pub fn every(self, steps: u64) -> Self {
         self.save(SaveAt::Every(steps))
     }
 
-    /// Writes output at the start, at equal intervals of this length from there on, and at the end.
+    /// Sets output at the start, at equal intervals of this length from there on, and at the end.
     pub fn interval(self, length: f64) -> Self {
         self.save(SaveAt::Interval(length))
     }
 
-    /// Writes output at both ends of so many equal intervals: 100 intervals have 101 times.
+    /// Sets output at both ends of this number of equal intervals: 100 intervals have 101 times.
     ///
     /// ```
     /// use lieflow::prelude::*;
@@ -284,7 +284,7 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
         self
     }
 
-    /// Calls `progress` with the time, whenever the flag of [`cancel`](Self::cancel) is read.
+    /// Calls `progress` with the time, each time before the flag of [`cancel`](Self::cancel) is read.
     pub fn progress(mut self, progress: impl FnMut(f64) + 'a) -> Self {
         self.settings.progress = Some(Box::new(progress));
         self

@@ -175,10 +175,7 @@ fn lit<P: Problem>(Step { n, t, h }: Step<f64>) -> Step<ScalarOf<P>> {
 }
 
 fn finite(is: bool) -> Result<(), StepError> {
-    match is {
-        true => Ok(()),
-        false => Err(StepError::NotFinite { what: "the state" }),
-    }
+    StepError::finite(is, "the state")
 }
 
 /// max(1, ‖y‖²).
@@ -233,7 +230,7 @@ fn checked_start<P: Problem>(
     let mut restore = action.work(group);
     let mut on = y.clone();
     if check_on_manifold(problem, &mut on, &mut restore)? {
-        action.assign(group, &on, y);
+        y.assign(&on);
     }
     action.check_member(group, y)?;
     if let Some(tolerance) = tolerance {
@@ -300,12 +297,12 @@ impl<'a, P: Problem, M: Method<P>> Points<'a, P, M> {
 
     /// The start of the last step ← the point.
     pub(super) fn start_at(&mut self, point: &PointOf<P>) {
-        self.problem.action().assign(self.problem.group(), point, &mut self.from);
+        self.from.assign(point);
     }
 
     /// y ← the point.
     pub(super) fn set(&mut self, point: &PointOf<P>) {
-        self.problem.action().assign(self.problem.group(), point, &mut self.y);
+        self.y.assign(point);
     }
 
     /// `at` ← the point at a place in the last step.
@@ -319,8 +316,8 @@ impl<'a, P: Problem, M: Method<P>> Points<'a, P, M> {
         let (problem, method) = (&**problem, &**method);
         let (action, group) = (problem.action(), problem.group());
         match place {
-            Place::End => action.assign(group, y, at),
-            Place::Start => action.assign(group, from, at),
+            Place::End => at.assign(y),
+            Place::Start => at.assign(from),
             Place::Within(theta) => {
                 method.interpolate(problem, lit::<P>(last), theta, from, work, at)?;
                 finite(action.is_finite(group, at))?;
@@ -334,7 +331,7 @@ impl<'a, P: Problem, M: Method<P>> Points<'a, P, M> {
                         (estimator.attempt)(method, problem, one, work).ratio?;
                     }
                     None => {
-                        action.assign(group, from, at);
+                        at.assign(from);
                         method.step(problem, lit::<P>(Step { h, ..last }), at, work)?;
                     }
                 }
@@ -369,7 +366,7 @@ impl<'a, P: Problem, M: Method<P>> Points<'a, P, M> {
         let Points { problem, y, to, orbit, restore, .. } = self;
         let problem = &**problem;
         let (action, group) = (problem.action(), problem.group());
-        action.assign(group, y, to);
+        to.assign(y);
         change(to);
         let checked = to.check_sizes("y", y).and_then(|()| action.check(group, to));
         if checked.is_err() {
@@ -382,8 +379,8 @@ impl<'a, P: Problem, M: Method<P>> Points<'a, P, M> {
         if !is_same && action.check_member(group, y).is_ok() {
             action.check_member(group, to)?;
         }
-        action.assign(group, to, orbit);
-        action.assign(group, to, y);
+        orbit.assign(to);
+        y.assign(to);
         Ok(())
     }
 
@@ -403,10 +400,7 @@ impl<'a, P: Problem, M: Method<P>> Points<'a, P, M> {
                 let attempt = Attempt { tolerance, step, end, streak, points, watch };
                 (estimator.attempt)(method, problem, attempt, work)
             }
-            None => {
-                let ratio = Err(StepError::NotFinite { what: "the error estimate" });
-                Attempts { accepted: 0, is_kept: false, step, end, size: step.h, ratio }
-            }
+            None => Attempts::without_estimate(step, end),
         }
     }
 
@@ -415,7 +409,7 @@ impl<'a, P: Problem, M: Method<P>> Points<'a, P, M> {
         let problem = self.problem.clone();
         point.check_sizes("y", &self.y)?;
         problem.action().check(problem.group(), point)?;
-        self.change(&mut |y| problem.action().assign(problem.group(), point, y))
+        self.change(&mut |y| y.assign(point))
     }
 }
 
@@ -424,21 +418,20 @@ impl<P: Problem, M: Method<P>> AnyPoints for Points<'_, P, M> {
         let Points { problem, method, y, from, work, .. } = self;
         let (problem, method) = (&**problem, &**method);
         let (action, group) = (problem.action(), problem.group());
-        action.assign(group, y, from);
+        from.assign(y);
         let taken = method.step(problem, lit::<P>(step), y, work);
         let taken = taken.and_then(|()| finite(action.is_finite(group, y)));
         if taken.is_err() {
-            action.assign(group, from, y);
+            y.assign(from);
         }
         taken
     }
     fn steps(&mut self, steps: EqualSteps) -> Result<(), (u64, StepError)> {
         let Points { problem, method, y, from, work, .. } = self;
         let (problem, method) = (&**problem, &**method);
-        let (action, group) = (problem.action(), problem.group());
-        action.assign(group, y, from);
+        from.assign(y);
         method.steps(problem, steps, y, work).inspect_err(|(failed, _)| {
-            action.assign(group, from, y);
+            y.assign(from);
             let _ = method.steps(problem, EqualSteps { end: *failed, ..steps }, y, work);
         })
     }
@@ -558,7 +551,7 @@ impl<P: Problem, M: Method<P>> AnyPoints for Points<'_, P, M> {
                 (estimator.attempt)(method, problem, one, work).ratio.map(drop)
             }
             None => {
-                problem.action().assign(problem.group(), from, to);
+                to.assign(from);
                 method.step(problem, lit::<P>(step), to, work)
             }
         }

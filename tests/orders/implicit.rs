@@ -1,17 +1,17 @@
 //! Implicit methods: Gauss on the linear space, implicit RKMK and its symmetric version. Order in m and g,
 //! symmetry, invariants, typed errors; on so(3) in closed form and on so(n) over matrices.
 
+use crate::support::systems::{assert_order, grid, run};
 use lieflow::actions::LeftTranslation;
 use lieflow::error::StepError;
 use lieflow::groups::{LieGroup, MatrixGroup, Sample, So3};
 use lieflow::maps::{CCSK123, Cay, Exp};
 use lieflow::methods::{
-    AnyMethod, Composition, GAUSS2, GAUSS4, GAUSS6, Gauss, KAHAN_LI6, Metric, RkmkGauss,
-    RkmkGaussSymmetric,
+    Composition, GAUSS2, GAUSS4, GAUSS6, Gauss, KAHAN_LI6, RkmkGauss, RkmkGaussSymmetric,
 };
 use lieflow::problems::{
-    Ambient, BodyState, Exact, Flow, PointOf, RigidBody, RigidBodyAttitude, RigidBodyN,
-    RigidBodyNAttitude, RigidBodyState,
+    Ambient, BodyState, Exact, Flow, RigidBody, RigidBodyAttitude, RigidBodyN, RigidBodyNAttitude,
+    RigidBodyState,
 };
 use lieflow::{CoordinateMap, LieAlgebra, Method, Problem, SaveAt, Step, TimeGrid, integrate};
 use nalgebra::{Matrix3, Vector3};
@@ -20,37 +20,6 @@ use rand_pcg::Pcg64;
 
 const INERTIA: [f64; 3] = [1.0, 2.0, 3.0];
 const MOMENTUM: [f64; 3] = [0.9, 1.0, 2.1];
-
-/// The last three pairwise slopes lie within 0.15 of p, on a grid fixed in advance whose ratio is
-/// near 3/2.
-fn assert_order(name: &str, p: f64, grid: &[u64], errors: &[f64]) {
-    let slopes: Vec<f64> = grid
-        .windows(2)
-        .zip(errors.windows(2))
-        .map(|(n, e)| (e[0] / e[1]).ln() / (n[1] as f64 / n[0] as f64).ln())
-        .collect();
-    println!("{name:36} errors {errors:?} slopes {slopes:.2?}");
-    let last = &slopes[slopes.len() - 3..];
-    assert!(last.iter().all(|s| (s - p).abs() < 0.15), "{name}: {slopes:.3?}, expected {p}");
-}
-
-fn grid(first: u64) -> [u64; 4] {
-    [4u64, 6, 9, 13].map(|n| n * first / 4)
-}
-
-fn run<P, M>(p: &P, method: &M, y: &PointOf<P>, end: f64, n: u64) -> PointOf<P>
-where
-    P: Problem,
-    M: Method<P> + Clone + Send + Sync,
-    P::Group: LieAlgebra<Scalar = f64>,
-    PointOf<P>: Metric<Scalar = f64>,
-{
-    // The driver is compiled once for each problem.
-    let method = AnyMethod::new(method.clone());
-    let (mut y, grid) = (y.clone(), TimeGrid::with_steps([0.0, end], n).expect("a grid"));
-    integrate(p, &method, &grid, &SaveAt::Ends, &mut y, |_, _| {}).expect("a run");
-    y
-}
 
 /// f = cos 1.3t A + tanh g₁₂ B + t g₀₀/2 [A, B], ‖A‖ = ‖B‖ = 0.8.
 fn driven(

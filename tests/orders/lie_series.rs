@@ -1,18 +1,16 @@
 //! Lie series (Taylor) methods on any group: order, group, invariants, the step from the last terms,
 //! typed errors; on quadratic Lie–Poisson systems, attitudes and a field that depends on time.
 
-use crate::support::systems::{assert_order, casimirs, quadratic, systems};
+use crate::support::systems::{assert_order, casimirs, quadratic, run, systems};
 use faer::Mat;
 use lieflow::actions::LeftTranslation;
 use lieflow::groups::{LieGroup, MatrixGroup, Sample, So3};
 use lieflow::maps::Exp;
-use lieflow::methods::{
-    AnyMethod, GAUSS6, LieSeries, Metric, RkmkGaussSymmetric, SeriesGroup, Taylor,
-};
+use lieflow::methods::{GAUSS6, LieSeries, RkmkGaussSymmetric, SeriesGroup, Taylor};
 use lieflow::problems::{
-    Euler, Kinetic, PointOf, Problem, RigidBodyN, RigidBodyNAttitude, RigidBodyState, TaylorField,
+    Euler, Kinetic, Problem, RigidBodyN, RigidBodyNAttitude, RigidBodyState, TaylorField,
 };
-use lieflow::{Error, LieAlgebra, Method, SaveAt, Step, StepError, TimeGrid, integrate};
+use lieflow::{Error, LieAlgebra, Method, SaveAt, Step, StepError};
 use lieflow::{StepControl, integrate_adaptive};
 use nalgebra::{Matrix3, Vector3};
 use rand::SeedableRng;
@@ -20,20 +18,6 @@ use rand_pcg::Pcg64;
 
 fn series(order: usize) -> LieSeries {
     LieSeries::new(order).expect("an order")
-}
-
-fn run<P, M>(p: &P, method: &M, y: &PointOf<P>, end: f64, n: u64) -> PointOf<P>
-where
-    P: Problem,
-    M: Method<P> + Clone + Send + Sync,
-    P::Group: LieAlgebra<Scalar = f64>,
-    PointOf<P>: Metric<Scalar = f64>,
-{
-    // The driver is compiled once for each problem.
-    let method = AnyMethod::new(method.clone());
-    let (mut y, grid) = (y.clone(), TimeGrid::with_steps([0.0, end], n).expect("a grid"));
-    integrate(p, &method, &grid, &SaveAt::Ends, &mut y, |_, _| {}).expect("a run");
-    y
 }
 
 /// Numbers of steps fixed in advance over a time of 8: high orders pass from the first digits to

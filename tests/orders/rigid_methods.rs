@@ -1,6 +1,7 @@
 //! The special methods for the free rigid body: order in m and in g against the exact motion, what
 //! each keeps, the typed errors of the implicit ones, and Table 3 of the paper.
 
+use crate::support::systems;
 use lieflow::error::StepError;
 use lieflow::groups::LieGroup;
 use lieflow::maps::{CCSK, CCSK123, CCSK321, Cay, Exp};
@@ -41,18 +42,9 @@ fn exact(momentum: [f64; 3], end: f64) -> (Vector3<f64>, Matrix3<f64>) {
     Exact::new(INERTIA, momentum, attitude()).expect("a body").state(end).expect("a state")
 }
 
-/// The last three pairwise slopes lie within 0.15 of p, on a grid fixed in advance whose ratio is
-/// 3/2 or near it.
+/// As [`systems::assert_order`], and no error is at rounding.
 fn assert_order(name: &str, p: f64, grid: &[u64], errors: &[f64]) {
-    let slopes: Vec<f64> = grid
-        .windows(2)
-        .zip(errors.windows(2))
-        .map(|(n, e)| (e[0] / e[1]).ln() / (n[1] as f64 / n[0] as f64).ln())
-        .collect();
-    println!("{name:28} errors {errors:?} slopes {slopes:.2?}");
-    let last = &slopes[slopes.len() - 3..];
-    let good = last.iter().all(|s| (s - p).abs() < 0.15);
-    assert!(good, "{name}: {slopes:.3?}, expected {p}");
+    systems::assert_order(name, p, grid, errors);
     assert!(errors.last().is_some_and(|&e| e > 1e-14), "{name}: rounding reached: {errors:?}");
 }
 

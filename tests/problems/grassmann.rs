@@ -57,9 +57,9 @@ fn what_spans_nothing_is_refused() {
     let flow = SubspaceFlow::new(a()).expect("a flow");
     assert!(SubspaceFlow::new(mat![[0.0, 1.0], [0.0, 0.0]]).is_err());
     let refused = |x: Mat<f64>| flow.span(&x).expect_err("it spans nothing");
-    assert!(matches!(refused(Mat::zeros(4, 2)), Error::Singular { arg: "X", .. }));
-    assert!(matches!(refused(Mat::zeros(3, 1)), Error::Shape { arg: "X", .. }));
-    assert!(matches!(refused(Mat::zeros(4, 5)), Error::Shape { arg: "X", .. }));
+    assert!(matches!(refused(Mat::zeros(4, 2)), Error::Singular { arg: "x", .. }));
+    assert!(matches!(refused(Mat::zeros(3, 1)), Error::Shape { arg: "x", .. }));
+    assert!(matches!(refused(Mat::zeros(4, 5)), Error::Shape { arg: "x", .. }));
     let nan = Mat::from_fn(4, 1, |i, _| if i == 2 { f64::NAN } else { 1.0 });
     assert!(matches!(refused(nan), Error::NotFiniteEntry { row: 2, col: 0, .. }));
 }

@@ -2,9 +2,10 @@
 #![allow(dead_code)] // each test file uses a part
 
 use faer::{Mat, Scale};
-use lieflow::LieAlgebra;
 use lieflow::groups::{AlgebraMatrix, MatrixGroup, Sample};
-use lieflow::problems::{Euler, Kinetic};
+use lieflow::methods::{AnyMethod, Metric};
+use lieflow::problems::{Euler, Kinetic, PointOf};
+use lieflow::{LieAlgebra, Method, Problem, SaveAt, TimeGrid, integrate};
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
 
@@ -76,4 +77,18 @@ pub(crate) fn assert_order(name: &str, p: f64, grid: &[u64], errors: &[f64]) {
     println!("{name:36} errors {errors:?} slopes {slopes:.2?}");
     let last = &slopes[slopes.len() - 3..];
     assert!(last.iter().all(|s| (s - p).abs() < 0.15), "{name}: {slopes:.3?}, expected {p}");
+}
+
+/// The state at `end` after n equal steps. The driver is compiled once for each problem.
+pub(crate) fn run<P, M>(p: &P, method: &M, y: &PointOf<P>, end: f64, n: u64) -> PointOf<P>
+where
+    P: Problem,
+    M: Method<P> + Clone + Send + Sync,
+    P::Group: LieAlgebra<Scalar = f64>,
+    PointOf<P>: Metric<Scalar = f64>,
+{
+    let method = AnyMethod::new(method.clone());
+    let (mut y, grid) = (y.clone(), TimeGrid::with_steps([0.0, end], n).expect("a grid"));
+    integrate(p, &method, &grid, &SaveAt::Ends, &mut y, |_, _| {}).expect("a run");
+    y
 }

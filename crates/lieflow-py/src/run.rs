@@ -114,7 +114,7 @@ impl Settings {
         start: impl FnOnce() -> Vec<f64>,
     ) -> Result<Steps, lieflow::Error> {
         let dt = self.dt.map(|dt| TimeGrid::new(t_span, dt));
-        let grid = dt.or_else(|| self.steps.map(|steps| of_steps(t_span, steps)));
+        let grid = dt.or_else(|| self.steps.map(|steps| TimeGrid::with_steps(t_span, steps)));
         if let Some(grid) = grid.transpose()? {
             return Ok(Steps::Equal(if self.split { grid.split() } else { grid }));
         }
@@ -135,18 +135,6 @@ impl Settings {
         }
         Ok(Steps::ByError { t_span, control })
     }
-}
-
-/// The grid of so many steps. Too many of them are a mistake of `steps`, not of the size that follows.
-fn of_steps(t_span: [f64; 2], steps: u64) -> Result<TimeGrid, lieflow::Error> {
-    TimeGrid::with_steps(t_span, steps).map_err(|error| match error {
-        lieflow::Error::OutOfRange { arg, .. } if arg == "dt" => lieflow::Error::OutOfRange {
-            arg: "steps".into(),
-            value: steps as f64,
-            expected: "so few that t + h differs from t".into(),
-        },
-        error => error,
-    })
 }
 
 /// The rows of the output.

@@ -12,10 +12,10 @@ use super::taylor::{
     halvings_18,
 };
 use super::{Approximant, ExpmChoice, NORM_MAX_SKEW, Structure};
+use crate::dense::schur::{ONE, ZERO};
 use crate::error::StepError;
 use crate::scalar::{Ops, tally};
 
-const ONE: c64 = c64::new(1.0, 0.0);
 /// The bound of the mean: e^mean must not underflow or overflow if the result does not.
 const MEAN_MAX: f64 = 650.0;
 
@@ -72,9 +72,7 @@ impl ComplexExponential {
         StepError::check_shape("u", u.shape(), (n, n))?;
         StepError::check_shape("out", out.shape(), (n, n))?;
         let (norm, skew) = (norm1(u.as_ref()), structure == Structure::Skew);
-        if !norm.is_finite() {
-            return Err(StepError::NotFinite { what: "the argument of exp" });
-        }
+        StepError::finite(norm.is_finite(), "the argument of exp")?;
         if skew && norm > NORM_MAX_SKEW {
             return Err(StepError::NormTooLarge { map: "exp" });
         }
@@ -98,7 +96,7 @@ impl ComplexExponential {
             mul(t, Accum::Replace, out.as_ref(), out.as_ref());
             core::mem::swap(t, out);
         }
-        if shift != c64::new(0.0, 0.0) {
+        if shift != ZERO {
             let factor = shift.exp();
             for_all(out, |x| x * factor);
         }
@@ -113,7 +111,7 @@ impl ComplexExponential {
 
     /// a ← a − mean·𝟙 if that halves the norm. Returns the mean and the norm.
     fn without_trace(&mut self, norm: f64) -> (c64, f64) {
-        let (n, zero) = (self.powers[0].nrows(), c64::new(0.0, 0.0));
+        let (n, zero) = (self.powers[0].nrows(), ZERO);
         let a = &mut self.powers[0];
         let mean = (0..n).map(|i| a[(i, i)] / n as f64).sum::<c64>();
         if norm <= THETA_18 || mean.norm() < 0.5 * norm / n as f64 || mean.re.abs() > MEAN_MAX {

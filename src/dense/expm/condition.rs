@@ -94,9 +94,7 @@ impl Exponential {
         StepError::check_shape("u", u.shape(), (n, n))?;
         StepError::check_shape("x", x.shape(), (n, k))?;
         let norm = norm1(u.as_ref());
-        if !norm.is_finite() {
-            return Err(StepError::NotFinite { what: "the argument of exp" });
-        }
+        StepError::finite(norm.is_finite(), "the argument of exp")?;
         // Without columns there is nothing to do, however large u is.
         if k == 0 {
             return Ok(ApplyChoice::Series { steps: 0, products: 0 });

@@ -190,9 +190,7 @@ impl Expm {
         }
         // A sum may overflow where every entry is finite.
         let norm = norm1(x.as_ref());
-        if !norm.is_finite() {
-            return Err(StepError::NotFinite { what: "the argument of exp" });
-        }
+        StepError::finite(norm.is_finite(), "the argument of exp")?;
         if n == 1 {
             out[(0, 0)] = x[(0, 0)].exp();
             self.choice = ExpmChoice::default();
@@ -207,6 +205,6 @@ impl Expm {
         } else {
             self.exp_skew(x, norm, out);
         }
-        if is_finite(out) { Ok(()) } else { Err(StepError::NotFinite { what: "exp(u)" }) }
+        StepError::finite(is_finite(out), "exp(u)")
     }
 }

@@ -28,9 +28,7 @@ impl<S: Trig, const I: usize, const J: usize, const K: usize> CoordinateMap<So3<
         at: &mut Angles<S>,
         g: &mut Matrix3<S>,
     ) -> Result<(), StepError> {
-        if !(u[0].abs() + u[1].abs() + u[2].abs()).is_finite() {
-            return Err(StepError::NotFinite { what: "u in ccsk(u)" });
-        }
+        StepError::finite((u[0].abs() + u[1].abs() + u[2].abs()).is_finite(), "u in ccsk(u)")?;
         *at = ccsk_of::<S, I, J, K>(u, g);
         Ok(())
     }

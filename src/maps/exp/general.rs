@@ -27,7 +27,7 @@ pub struct ExpAt {
 /// Beyond the reach of the series.
 #[derive(Debug)]
 enum Exact {
-    /// Of a truncated series nothing else is asked.
+    /// Nothing: the series is truncated.
     None,
     /// Every u of the algebra is skew.
     Eigen(Box<SkewEigen>),

@@ -53,10 +53,7 @@ impl<S: Trig> CoordinateMap<Se3<S>> for Exp {
         } else {
             *g = (so3::exp_huge(omega)?, so3::dexp(omega, v)?);
         }
-        match g.1.iter().all(|x| x.is_finite()) {
-            true => Ok(()),
-            false => Err(StepError::NotFinite { what: "exp(u)" }),
-        }
+        StepError::finite(g.1.iter().all(|x| x.is_finite()), "exp(u)")
     }
     /// Refused for α² ≥ 1e300, where squares leave the range.
     #[inline]
@@ -211,10 +208,7 @@ impl<S: Trig> CoordinateMap<Se23<S>> for Exp {
             }
             false => so3::dexp(omega, p)?,
         };
-        match g.1.1.iter().all(|x| x.is_finite()) {
-            true => Ok(()),
-            false => Err(StepError::NotFinite { what: "exp(u)" }),
-        }
+        StepError::finite(g.1.1.iter().all(|x| x.is_finite()), "exp(u)")
     }
     /// Refused for α² ≥ 1e300, where squares leave the range.
     #[inline]

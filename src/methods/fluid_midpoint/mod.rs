@@ -74,10 +74,7 @@ impl FluidMidpoint {
     /// # Errors
     /// [`Error::OutOfRange`] unless it is finite and positive.
     pub fn with_tolerance(self, tolerance: f64) -> Result<Self, Error> {
-        match tolerance.is_finite() && tolerance > 0.0 {
-            true => Ok(FluidMidpoint { tolerance, ..self }),
-            false => Err(Error::out_of_range("tolerance", tolerance, "a finite number > 0")),
-        }
+        Ok(FluidMidpoint { tolerance: Error::positive("tolerance", tolerance)?, ..self })
     }
     /// The rule: one of the two.
     pub const fn rule(&self) -> MidpointRule {

@@ -214,9 +214,7 @@ where
     fn onto_group(&mut self, group: &P::Group) -> Result<(), StepError> {
         let LieSeriesWork { g, scratch, .. } = self;
         let residual = group.correct(g, scratch.each_mut());
-        if !group.size(g).is_finite() {
-            return Err(StepError::NotFinite { what: "the Taylor series" });
-        }
+        StepError::finite(group.size(g).is_finite(), "the Taylor series")?;
         if !residual.all_below(RESIDUAL_MAX) {
             return Err(StepError::OutsideChart {
                 map: "Lie series",

@@ -111,9 +111,7 @@ impl<P: LinearField, Psi: CoordinateMap<P::Group>, const S: usize, const K: usiz
         y: &mut PointOf<P>,
     ) -> Result<(), StepError> {
         let u = &self.scratch[0];
-        if !problem.group().is_finite(u) {
-            return Err(StepError::NotFinite { what: "the increment Ω" });
-        }
+        StepError::finite(problem.group().is_finite(u), "the increment Ω")?;
         self.chart.around(problem, psi, n, y).lambda(u, &mut self.y)?;
         core::mem::swap(y, &mut self.y);
         Ok(())

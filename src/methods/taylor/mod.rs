@@ -90,13 +90,11 @@ impl<const N: usize> Taylor<N> {
     where
         P::Group: LieAlgebra<Scalar = f64>,
     {
-        let range = |arg, x: f64, ok: bool, expected| match ok {
-            true => Ok(()),
-            false => Err(Error::out_of_range(arg, x, expected)),
-        };
-        range("span", span, span.is_finite(), "a finite number")?;
-        range("h", *h, h.is_finite() && *h != 0.0, "a finite number other than 0")?;
-        range("tolerance", tolerance, tolerance.is_finite() && tolerance > 0.0, "a number > 0")?;
+        Error::finite("span", span)?;
+        if !(h.is_finite() && *h != 0.0) {
+            return Err(Error::out_of_range("h", *h, "a finite number other than 0"));
+        }
+        Error::positive("tolerance", tolerance)?;
         let (m, mut frame) = problem.load(y);
         let body = Body::new(problem.inverse_inertia());
         let guess = h.abs().copysign(span);

@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::{check_finite, check_inertia};
+use super::check_inertia;
 use crate::actions::{Coadjoint, LeftTranslation};
 use crate::error::Error;
 use crate::groups::So3;
@@ -116,7 +116,7 @@ impl<S: Real> RigidBodyAttitude<S> {
     /// [`Error::OutOfRange`] for a moment that is not finite and positive, or a momentum that is
     /// not finite.
     pub fn new(inertia: [f64; 3], momentum_space: [f64; 3]) -> Result<Self, Error> {
-        check_finite("momentum_space", &momentum_space)?;
+        Error::all_finite("momentum_space", &momentum_space)?;
         let [a, b, c] = momentum_space.map(S::lit);
         Ok(RigidBodyAttitude {
             body: RigidBody::new(inertia)?,

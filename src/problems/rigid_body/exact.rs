@@ -22,13 +22,13 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::check_inertia;
 use super::theta::Theta;
-use super::{check_finite, check_inertia};
 use crate::elliptic::{Ladder, rc, rf, rj};
 use crate::error::{Error, StepError};
 use crate::groups::So3;
 use crate::maps::{CoordinateMap, Exp};
-use crate::scalar::Trig;
+use crate::scalar::{ROUND, Trig};
 use crate::so3::cross;
 
 /// The exact motion of a free rigid body: m(t) and g(t) at any time t, without steps.
@@ -126,7 +126,7 @@ impl Exact {
         attitude: Matrix3<f64>,
     ) -> Result<Self, Error> {
         check_inertia(&inertia)?;
-        check_finite("momentum_body", &momentum_body)?;
+        Error::all_finite("momentum_body", &momentum_body)?;
         So3::new().check_element("attitude", &attitude, 1e-6)?;
         let m0 = Vector3::from(momentum_body);
         let motion = match Elliptic::new(inertia, m0, &attitude)? {
@@ -146,7 +146,7 @@ impl Exact {
     /// # Errors
     /// [`Error::OutOfRange`] for a time that is not finite; [`Error::Map`] where a number leaves the range of `f64`.
     pub fn momentum_body(&self, t: f64) -> Result<Vector3<f64>, Error> {
-        check_finite("t", &[t])?;
+        Error::finite("t", t)?;
         match &self.motion {
             Orbit::Elliptic(motion) if t != 0.0 => finite(motion.momentum(t)),
             _ => Ok(self.m0),
@@ -158,7 +158,7 @@ impl Exact {
     /// # Errors
     /// As [`momentum_body`](Self::momentum_body).
     pub fn state(&self, t: f64) -> Result<(Vector3<f64>, Matrix3<f64>), Error> {
-        check_finite("t", &[t])?;
+        Error::finite("t", t)?;
         if t == 0.0 {
             return Ok((self.m0, self.g0));
         }
@@ -205,8 +205,7 @@ impl Fast {
     /// (sin v, cos v) at τ = 2Kj + r with |r| ≤ K, and the sign of sn and cn.
     #[inline]
     fn angle(&self, tau: f64) -> ((f64, f64), f64) {
-        // Adding 1.5·2⁵² rounds to a whole number, whose last bit is then the last one.
-        const ROUND: f64 = 6755399441055744.0;
+        // The last bit of a whole number is then the last one.
         let shifted = tau * self.inverse + ROUND;
         let half_turns = shifted - ROUND;
         let r = (tau - half_turns * self.period[0]) - half_turns * self.period[1];

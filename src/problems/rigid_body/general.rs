@@ -2,7 +2,7 @@
 
 use faer::Mat;
 
-use super::{check_finite, check_inertia};
+use super::check_inertia;
 use crate::actions::{Coadjoint, LeftTranslation};
 use crate::dense::{antisymmetrise, mul, scaled_sum};
 use crate::error::Error;
@@ -65,7 +65,7 @@ impl RigidBodyN {
     /// # Errors
     /// As [`from_pairs`](Self::from_pairs): the sums must be positive, the λ_i need not.
     pub fn manakov(lambda: &[f64]) -> Result<Self, Error> {
-        check_finite("lambda", lambda)?;
+        Error::all_finite("lambda", lambda)?;
         let n = lambda.len();
         let sums: Vec<f64> =
             (0..n).flat_map(|i| (i + 1..n).map(move |j| lambda[i] + lambda[j])).collect();

@@ -33,11 +33,3 @@ pub(crate) fn check_inertia(inertia: &[f64]) -> Result<(), Error> {
     }
     Ok(())
 }
-
-/// Checks that every component is finite.
-pub(crate) fn check_finite(arg: &str, x: &[f64]) -> Result<(), Error> {
-    match x.iter().position(|x| !x.is_finite()) {
-        Some(i) => Err(Error::out_of_range(format!("{arg}[{i}]"), x[i], "a finite number")),
-        None => Ok(()),
-    }
-}

@@ -195,7 +195,7 @@ impl RigidBodyState<f64> {
         momentum_body: [f64; 3],
         attitude: Matrix3<f64>,
     ) -> Result<BodyState, Error> {
-        super::check_finite("momentum_body", &momentum_body)?;
+        Error::all_finite("momentum_body", &momentum_body)?;
         self.group().check_element("attitude", &attitude, 1e-6)?;
         Ok(BodyState { m: momentum_body.into(), g: attitude })
     }

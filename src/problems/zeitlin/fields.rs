@@ -73,15 +73,9 @@ impl Zeitlin<Sphere> {
             let numbers =
                 [("latitude", latitude), ("longitude", longitude), ("circulation", circulation)];
             for (name, x) in numbers {
-                if !x.is_finite() {
-                    let arg = format!("vortices[{i}].{name}");
-                    return Err(Error::out_of_range(arg, x, "a finite number"));
-                }
+                Error::finite(format!("vortices[{i}].{name}"), x)?;
             }
-            if !(width.is_finite() && width > 0.0) {
-                let arg = format!("vortices[{i}].width");
-                return Err(Error::out_of_range(arg, width, "a finite number > 0"));
-            }
+            Error::positive(format!("vortices[{i}].width"), width)?;
             let y = harmonics_at(n, latitude, longitude);
             for l in 1..n {
                 let decay = (-0.5 * width * width * (l * (l + 1)) as f64).exp();

@@ -101,7 +101,7 @@ impl Zeitlin<Sphere> {
             let expected = format!("L² coefficients with L ≤ {n}");
             return Err(Error::out_of_range("coefficients", count as f64, expected));
         }
-        super::super::rigid_body::check_finite("coefficients", coefficients)?;
+        Error::all_finite("coefficients", coefficients)?;
         let mut w = ComplexMatrix::zeros(n, n);
         for m in 0..below {
             for l in m..below {

@@ -156,9 +156,8 @@ impl Zeitlin<Torus> {
                 let arg = format!("modes[{k}].m");
                 return Err(Error::out_of_range(arg, f64::from(m), format!("−{max} ≤ m ≤ {max}")));
             }
-            if let Some(x) = amplitudes.into_iter().find(|x| !x.is_finite()) {
-                let arg = format!("modes[{k}].amplitude");
-                return Err(Error::out_of_range(arg, x, "a finite number"));
+            for x in amplitudes {
+                Error::finite(format!("modes[{k}].amplitude"), x)?;
             }
             if m == [0, 0] {
                 continue;
@@ -243,15 +242,9 @@ impl Zeitlin<Torus> {
         let mut modes: Vec<_> = half_plane(max).map(|m| (m, [0.0; 2])).collect();
         for (i, &([x, y], circulation, width)) in vortices.iter().enumerate() {
             for (name, value) in [("x", x), ("y", y), ("circulation", circulation)] {
-                if !value.is_finite() {
-                    let arg = format!("vortices[{i}].{name}");
-                    return Err(Error::out_of_range(arg, value, "a finite number"));
-                }
+                Error::finite(format!("vortices[{i}].{name}"), value)?;
             }
-            if !(width.is_finite() && width > 0.0) {
-                let arg = format!("vortices[{i}].width");
-                return Err(Error::out_of_range(arg, width, "a finite number > 0"));
-            }
+            Error::positive(format!("vortices[{i}].width"), width)?;
             for (m, [a, b]) in &mut modes {
                 let [m1, m2] = m.map(f64::from);
                 let decay = (-0.5 * width * width * (m1 * m1 + m2 * m2)).exp();

@@ -7,6 +7,7 @@ mod maps;
 mod products;
 mod steps;
 
+use lieflow::methods::Metric;
 use lieflow::problems::{PointOf, Problem};
 use lieflow::{Action, LieAlgebra, Method, Step};
 
@@ -27,7 +28,7 @@ where
     let mut back = problem.action().work(problem.group());
     let mut step = |n| {
         let step = Step { n, t: 0.1, h: 0.02 };
-        problem.action().assign(problem.group(), &y, &mut from);
+        from.assign(&y);
         method.step(problem, step, &mut y, &mut work).expect("a step");
         method.prepare(problem, step, &from, &y, &mut work).expect("the stages of the extension");
         method.interpolate(problem, step, 0.4, &from, &mut work, &mut at).expect("a point");

@@ -13,6 +13,9 @@ use crate::problem::entry_column;
 /// The asymmetry that the rounding of written entries explains, relative to the largest entry.
 pub(super) const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
+/// The rows of a matrix whose entries have names in formulas: one digit for the row and one for the column.
+pub(super) const NAMED_MAX: usize = 9;
+
 /// The n×n matrix under a key.
 ///
 /// # Errors

@@ -44,8 +44,7 @@ fn read(keys: Keys) -> Result<Forms, ReadError> {
     let (a, x) = all!(a, x)?;
     check_rows("x", &x, a.nrows())?;
     let flow = SubspaceFlow::new(a.clone())?;
-    let wrong = |error: Error| Refusal::at("x", error.to_string().replace('X', "x"));
-    let start = flow.span(&x).map_err(wrong)?;
+    let start = flow.span(&x)?;
     let (eigenvalues, eigenvectors) = symmetric_eigen(a.as_ref())
         .map_err(|_| Refusal::at("a", "its eigenvalues cannot be found"))?;
     let coordinates = multiply(eigenvectors.transpose(), qr(x.as_ref()).0.as_ref());

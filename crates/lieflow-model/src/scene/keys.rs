@@ -229,8 +229,7 @@ impl TimeKeys {
             all!(t_span, fixed, limits, control, at_knots)?;
         let grid = match fixed {
             Some(Either::First(dt)) => TimeGrid::new([t0, t1], dt)?,
-            Some(Either::Second(steps)) => TimeGrid::with_steps([t0, t1], steps)
-                .map_err(|error| Refusal::from(error).renamed(&[("dt", "steps")]))?,
+            Some(Either::Second(steps)) => TimeGrid::with_steps([t0, t1], steps)?,
             None if t1.is_finite() => TimeGrid::with_steps([t0, t1], STEPS)?,
             None => TimeGrid::new([t0, t1], 1.0)?,
         };

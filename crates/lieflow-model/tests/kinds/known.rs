@@ -36,7 +36,7 @@ fn manakovs_integrals_are_those_of_his_body() {
     assert_eq!(another, (vec!["energy", "casimirs"], None));
 }
 
-/// Lagrange's top that leans by θ and precesses steadily at Ω: see `tests/problems/heavy_top.rs`.
+/// Lagrange's top that leans by θ and precesses steadily at Ω: see `tests/problems/library/heavy_top.rs`.
 #[test]
 fn steady_precession_of_a_top() {
     let (a, c, w, theta, rate) = (1.2, 0.5, 2.0, 0.7f64, 0.9);

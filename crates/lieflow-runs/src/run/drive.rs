@@ -40,7 +40,7 @@ impl<P: Runnable> RowCurve for CurveOf<P> {
         }
         Ok(())
     }
-    /// Those of the points, those of the choices, and how many the last are.
+    /// The numbers of the points, those of the choices, and the number of choices.
     fn numbers(&self) -> Vec<f64> {
         let (mut numbers, choices) = (self.points.numbers(), self.branches.numbers());
         numbers.extend_from_slice(&choices);

@@ -302,7 +302,7 @@ pub trait Runnable:
         spec: &MethodSpec,
         problem: &Arc<Self>,
         y: PointOf<Self>,
-        steps: StepByStep<'_>,
+        steps: StepByStep,
         points: Points<Self>,
     ) -> Result<Box<dyn Stepper>, RunError>;
 
@@ -335,7 +335,7 @@ pub trait Runnable:
     fn operations(&self, spec: &MethodSpec, y: PointOf<Self>, steps: &Steps) -> Option<f64>;
 }
 
-/// What appends the numbers of the row at (t, y). Behind a pointer, so that every kind with a type of problem shares
+/// A function that appends the numbers of the row at (t, y). It is behind a pointer, so that every kind with a type of problem shares
 /// what is compiled for it.
 pub type RowOf<'a, P> = dyn Fn(f64, &PointOf<P>, &mut Vec<f64>) + 'a;
 

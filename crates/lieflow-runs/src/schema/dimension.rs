@@ -14,11 +14,11 @@ pub struct Dimension {
 /// The names of units. `None` if a scene does not name them.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Units {
-    /// That of masses, such as `kg`.
+    /// The unit of masses, such as `kg`.
     pub mass: Option<String>,
-    /// That of lengths, such as `m`.
+    /// The unit of lengths, such as `m`.
     pub length: Option<String>,
-    /// That of times, such as `s`.
+    /// The unit of times, such as `s`.
     pub time: Option<String>,
 }
 

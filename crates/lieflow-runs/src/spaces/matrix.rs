@@ -95,9 +95,6 @@ impl Action<MatrixGroup> for MatrixAction {
     fn is_finite(&self, group: &MatrixGroup, p: &Mat<f64>) -> bool {
         self.check(group, p).is_ok()
     }
-    fn assign(&self, _: &MatrixGroup, p: &Mat<f64>, q: &mut Mat<f64>) {
-        q.copy_from(p);
-    }
     fn act(
         &self,
         group: &MatrixGroup,

@@ -20,7 +20,7 @@ const OPEN: usize = 4;
 /// Charts of a quantity of many columns.
 const CHARTS: usize = 12;
 /// A relative change below the first is rounding. Below the second a figure shows changes and not values.
-const CONSTANT: f64 = 1e-12;
+pub(super) const CONSTANT: f64 = 1e-12;
 const NEARLY: f64 = 1e-2;
 
 /// A column of a quantity.

@@ -4,14 +4,13 @@ use std::collections::BTreeMap;
 
 use lieflow_figures::{Axis, Block};
 
+use super::lines::CONSTANT;
 use super::lines::{LINES, in_rows};
 use super::sample::Sample;
 use super::swings::{Curve, Drawn, constants, drawn};
 use super::words;
 use crate::output::TIME;
 
-/// A relative change below this is rounding.
-const CONSTANT: f64 = 1e-12;
 /// Figures that are open; the others are in a fold.
 const OPEN: usize = 12;
 

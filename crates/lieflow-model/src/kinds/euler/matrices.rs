@@ -11,7 +11,9 @@ use super::energy::Energy;
 use super::group::WithGroup;
 use crate::formula::{Formula, Text};
 use crate::kinds::algebra::{Algebra, Miss, Named, miss};
-use crate::kinds::entries::{antisymmetric, numbered, rows, size_of_traces, square, traces};
+use crate::kinds::entries::{
+    NAMED_MAX, antisymmetric, numbered, rows, size_of_traces, square, traces,
+};
 use crate::kinds::on_m::OFF_M;
 use crate::kinds::prelude::*;
 use crate::problem::{FormulaKeys, SampleKeys, row_columns};
@@ -42,9 +44,6 @@ pub(super) struct EulerEquation {
 
 /// The distance from the algebra that a momentum may have, relative to its size.
 const ROUNDING: f64 = 1e-12;
-
-/// Formulas name entries by one digit for the row and one for the column.
-const NAMED_MAX: usize = 9;
 
 pub(super) fn on(named: Named, given: Given) -> Result<Forms, ReadError> {
     let algebra = named.algebra;

@@ -43,8 +43,8 @@ keys! { Keys [formula_keys] {
         "the energy as a formula in the momentum: m11, m12, ..., mnn, n at most 9; m1, m2, m3 on so3; m1, m2, m3, \
          p1, p2, p3 on se3; or inverse_inertia",
     inverse_inertia: Option<Table> =
-        "a quadratic energy, for matrices: n×n weights, symmetric for so; the gradient of the energy is the part in \
-         the algebra of the momentum times them, entry by entry",
+        "a quadratic energy, for matrices: n×n weights, of which so takes the symmetric part; the gradient of the energy \
+         is the part in the algebra of the momentum times them, entry by entry",
     momentum: Numbers = "initial momentum, n×n in the algebra, of so also the n(n-1)/2 entries above the diagonal, row by \
          row; 3 numbers on so3, 6 on se3",
 } }

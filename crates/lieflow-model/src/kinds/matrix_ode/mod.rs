@@ -24,7 +24,7 @@ use lieflow_runs::spaces::MatrixAction;
 use self::equation::Equation;
 use super::algebra::{ALGEBRAS, Algebra};
 use super::body::TYPED;
-use super::entries::{above_diagonal, check_rows, check_symmetric, side_of, whole};
+use super::entries::{NAMED_MAX, above_diagonal, check_rows, check_symmetric, side_of, whole};
 use super::prelude::*;
 use crate::formula::{Formula, Names, Text, Texts};
 use crate::problem::row_columns;
@@ -64,9 +64,6 @@ const ACTIONS: [(&str, MatrixAction); 5] = [
     ("coadjoint", MatrixAction::Coadjoint),
     ("lagrangian", MatrixAction::Lagrangian),
 ];
-
-/// Formulas name entries by one digit for the row and one for the column.
-const NAMED_MAX: usize = 9;
 
 fn read(mut keys: Keys) -> Result<Forms, ReadError> {
     let (formulas, samples) = (keys.formula_keys(), keys.sample_keys());
