@@ -7,15 +7,15 @@ use super::points::AnyPoints;
 use super::stats::{RunError, Stats};
 use super::stops::Stop;
 use super::streak::{Reach, Run};
-use super::timeline::{Chooser, Pacer, Timeline};
+use super::timeline::{Chooser, Pacer, Timeline, Turns};
 use crate::error::StepError;
 use crate::methods::{Attempts, Resize, Step, Streak};
 
 /// The number of rejections in a row that ends a run.
 const REJECTIONS_MAX: u32 = 60;
-/// An exact step with events, or without an end, turns by so many radian.
+/// The radians by which an exact step with events, or without an end, turns.
 const EXACT_TURN: f64 = 1.0;
-/// Other steps turn by so many radian at most, if events have zeros to search for. Then some forty zeros of a function
+/// The radians by which other steps turn at most, if events have zeros to search for. Then some forty zeros of a function
 /// of the state are in a step, and a search finds twice as many.
 const FARTHEST_TURN: f64 = 64.0;
 
@@ -113,7 +113,11 @@ impl Timeline {
                 return Err(self.too_many(size, max_steps));
             }
             if end == self.t {
-                return Err(self.underflow(h, None));
+                // A step that failed, if it was to end beyond here, is the reason.
+                let Pacer::ByError(Chooser { wall, obstacle, .. }) = self.pacer else {
+                    return Ok(());
+                };
+                return Err(self.underflow(h, obstacle.filter(|_| wall.is_some())));
             }
             self.see_noise_again(run.points(), size);
             if is_whole {
@@ -167,8 +171,8 @@ impl Timeline {
                     self.stats.rejected += 1;
                     in_a_row += 1;
                     let Pacer::ByError(chooser) = &mut self.pacer else { return Ok(()) };
-                    if rejected.is_err() {
-                        chooser.wall = Some(end);
+                    if let Err(error) = rejected {
+                        (chooser.wall, chooser.obstacle) = (Some(end), Some(error));
                     }
                     h = size * chooser.controller.reject(rejected.ok());
                     // The least step is tried before the run ends.
@@ -208,7 +212,24 @@ impl Timeline {
         (end, (end - self.t).abs())
     }
 
-    /// The largest size of a step that turns the state by so many radian at most, if events have zeros to search for. It is
+    /// Computes how fast the state turns, if that was long ago or a step of this size is a long one.
+    pub(super) fn see_turns(&mut self, points: &mut dyn AnyPoints, size: f64) {
+        let accepted = self.stats.accepted;
+        let is_due = |turns: &Turns| accepted >= turns.next || size.abs() > turns.radian;
+        if self.turns.as_ref().is_some_and(is_due) {
+            let radian = 1.0 / points.turn_rate(self.start_of(size.abs()));
+            self.turns = Some(Turns { radian, next: accepted + Turns::EVERY });
+            self.stats.evaluations = self.stats.evaluations.map(|n| n + 1);
+        }
+    }
+
+    /// The time of f at the start of a step of this size: t, or a little after it if t is a stop at which f jumps.
+    pub(super) fn start_of(&self, size: f64) -> f64 {
+        let end = self.t + size.copysign(self.t1 - self.t);
+        self.step_to(end, end - self.t, false).t
+    }
+
+    /// The largest size of a step that turns the state by this number of radians at most, if events have zeros to search for. It is
     /// not below the least size.
     fn largest_size(&self, turn: f64) -> f64 {
         let by_turn = self.turns.as_ref().map_or(f64::INFINITY, |turns| turn * turns.radian);
@@ -269,7 +290,7 @@ impl Timeline {
         if stop.is_finite() && !chooser.has_events {
             return f64::INFINITY;
         }
-        let rate = points.rate(self.t);
+        let rate = points.rate(self.start_of((stop - self.t).abs()));
         self.stats.evaluations = self.stats.evaluations.map(|n| n + 1);
         match rate > 0.0 {
             true => EXACT_TURN / rate,
@@ -285,7 +306,7 @@ impl Timeline {
         let (controller, tolerance) =
             (chooser.controller, chooser.control.tolerance.of_unit_size());
         let span = (stop - self.t).abs();
-        let d1 = points.rate(self.t);
+        let d1 = points.rate(self.start_of(span));
         self.stats.evaluations = self.stats.evaluations.map(|n| n + 1);
         if !d1.is_finite() {
             return 1e-3 * span.min(1.0); // the first attempt will say what is wrong

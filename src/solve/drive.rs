@@ -175,13 +175,14 @@ impl Drive<'_> {
         }
     }
 
-    /// True if the run is cancelled. Then its state is saved. Tells the time that the run has reached.
+    /// Tells the time that the run has reached. True if the run is cancelled, also by who is told. Then its state is saved.
     fn is_cancelled(&mut self, output: &mut dyn AnyOutput, t: f64) -> bool {
+        if let Some(progress) = &mut self.progress {
+            progress(t);
+        }
         let cancelled = self.cancel.is_some_and(|flag| flag.load(Ordering::Relaxed));
         if cancelled {
             self.save_state(output, true);
-        } else if let Some(progress) = &mut self.progress {
-            progress(t);
         }
         cancelled
     }

@@ -8,7 +8,7 @@
 use super::control::GOAL;
 use super::points::AnyPoints;
 use super::timeline::{Chooser, Pacer, Timeline};
-use crate::methods::{Step, Streak};
+use crate::methods::Streak;
 use crate::tolerance::Rule;
 
 /// The part of the estimated error of a step that is rounding of t.
@@ -23,15 +23,15 @@ pub(super) struct Noise {
 }
 
 impl Noise {
-    /// It is computed again after so many steps: where there was none, and where there was.
+    /// The number of steps after which the noise is computed again: where there was none, and where there was.
     const EVERY: [u64; 2] = [256, 16];
-    /// Steps of these parts of the size show it: their error is nothing else.
+    /// Steps of these parts of the size show the noise: their error is nothing else.
     const PARTS: [f64; 2] = [1.0 / 64.0, 1.0 / 50.0];
-    /// It varies from step to step, and may be so many times that of a part.
+    /// The noise varies from step to step. This is how many times that of a part it may be.
     const VARIES: f64 = 2.0;
-    /// It is at most so many times the error of f. The weights of an estimate are no larger.
+    /// The noise is at most this many times the error of f. The weights of an estimate are no larger.
     const MOST: f64 = 8.0;
-    /// An error that may be all noise counts as one that allows a step of so many times the size. So the steps grow.
+    /// An error that may be all noise counts as one that allows a step of this many times the size. So the steps grow.
     const GROWTH: f64 = 1.3;
 
     /// The number of steps after which it is computed again.
@@ -102,7 +102,7 @@ impl Timeline {
         let rule = control.tolerance.rule();
         // Less does not keep a step from growing.
         let least = controller.kept[0];
-        let (t, forward) = (self.t, self.t1 - self.t);
+        let (t, forward) = (self.start_of(size), self.t1 - self.t);
         let most = Noise::MOST * points.noise_of_time(t, size.copysign(forward)) / size;
         self.stats.evaluations = self.stats.evaluations.map(|n| n + 2);
         if most.is_nan() || most == 0.0 {
@@ -134,8 +134,8 @@ impl Timeline {
     /// The size of a step that is a part of another one, and its ratio; `None` where there is no such step.
     fn ratio_of_part(&mut self, points: &mut dyn AnyPoints, size: f64) -> Option<(f64, f64)> {
         let end = self.t + size.copysign(self.t1 - self.t);
-        let trial = Step { n: self.stats.accepted, t: self.t, h: end - self.t };
-        if end == self.t {
+        let trial = self.step_to(end, end - self.t, false);
+        if trial.h == 0.0 {
             return None;
         }
         self.attempted(1);

@@ -38,6 +38,8 @@ pub(super) struct Chooser {
     /// The end of the last step that failed, until the run has passed it. Steps grow only while they are short beside
     /// the way there.
     pub(super) wall: Option<f64>,
+    /// Why that step failed. A saved state does not have it.
+    pub(super) obstacle: Option<StepError>,
     /// True if the run has events. Exact steps are then short enough to show them.
     pub(super) has_events: bool,
     /// What the rounding of t makes of a step.
@@ -53,8 +55,8 @@ pub(super) struct Turns {
 }
 
 impl Turns {
-    /// It is computed again after so many steps, and before each longer one.
-    const EVERY: u64 = 16;
+    /// The number of steps after which it is computed again. It is computed before each longer step, too.
+    pub(super) const EVERY: u64 = 16;
 }
 
 /// What the workspace holds of the last step.
@@ -125,9 +127,17 @@ impl Timeline {
             }
             Pace::ByError(control) => {
                 let controller = Controller::new(error_order.unwrap_or(facts.order));
-                let (h, wall, has_events) = (None, None, false);
+                let (h, wall, obstacle, has_events) = (None, None, None, false);
                 let noise = Noise::default();
-                Pacer::ByError(Chooser { control, controller, h, wall, has_events, noise })
+                Pacer::ByError(Chooser {
+                    control,
+                    controller,
+                    h,
+                    wall,
+                    obstacle,
+                    has_events,
+                    noise,
+                })
             }
         };
         let cadence = Cadence::new(facts.stays_on_manifold);
@@ -161,17 +171,6 @@ impl Timeline {
         self.turns = has_zeros.then_some(Turns { radian: f64::INFINITY, next: 0 });
         if let Pacer::ByError(chooser) = &mut self.pacer {
             chooser.has_events = has_events;
-        }
-    }
-
-    /// Computes how fast the state turns, if that was long ago or a step of this size is a long one.
-    pub(super) fn see_turns(&mut self, points: &mut dyn AnyPoints, size: f64) {
-        let Some(turns) = &mut self.turns else { return };
-        let accepted = self.stats.accepted;
-        if accepted >= turns.next || size.abs() > turns.radian {
-            *turns =
-                Turns { radian: 1.0 / points.turn_rate(self.t), next: accepted + Turns::EVERY };
-            self.stats.evaluations = plus(self.stats.evaluations, Some(1));
         }
     }
 
@@ -292,7 +291,9 @@ impl Timeline {
         // The end of a step of a grid may be a rounding after `end`. Half a unit is no change of a step that is longer than
         // both times, across t = 0.
         let mut less = 0.5 * unit;
-        while unit != 0.0 && (t + h - end) * unit.signum() >= 0.0 {
+        // The step may be taken in two halves, whose times are rounded, too.
+        let ends = |h: f64| [t + h, t + 0.5 * h + 0.5 * h];
+        while unit != 0.0 && ends(h).iter().any(|at| (at - end) * unit.signum() >= 0.0) {
             if h - less == h {
                 less *= 2.0;
             }

@@ -9,9 +9,9 @@ use lieflow::maps::{CoordinateMap, Exp};
 use lieflow::methods::commutator_free::{CF4, CF43};
 use lieflow::methods::low_storage::LS32;
 use lieflow::methods::tableau::{DOP853, DOPRI5, RK4};
-use lieflow::methods::{CommutatorFree, LowStorage, Rk, Rkmk};
+use lieflow::methods::{CommutatorFree, Doubling, LowStorage, Rk, Rkmk};
 use lieflow::problems::{Flow, Problem};
-use lieflow::{Solve, StepControl};
+use lieflow::{Event, Solve, StepControl};
 use nalgebra::Vector3;
 
 type V = Vector3<f64>;
@@ -106,6 +106,39 @@ fn the_value_of_f_at_a_stop_counts_for_nothing() {
             }
             check![Rkmk::new(DOP853, Exp), Rkmk::new(DOPRI5, Exp), CommutatorFree(CF43)];
         }
+    }
+}
+
+/// Where times are large, the noise of a step is measured: beside a stop, too, and not by the value of f there.
+#[test]
+fn noise_beside_a_stop_is_not_its_jump() {
+    for t0 in [1e3, 9e4, 2.39e6] {
+        let stops = [t0 + 0.21, t0 + 0.29, t0 + 0.2901];
+        let exact = 0.21 - 1.5 * 0.08 + 2.0 * 0.0001 + 0.5 * (1.5 - 0.2901);
+        let calls = core::cell::Cell::new(0);
+        let problem = spin(|t: f64| {
+            calls.set(calls.get() + u32::from(stops.contains(&t)));
+            [1.0, -1.5, 2.0, 0.5][stops.iter().filter(|stop| t > **stop).count()]
+        });
+        macro_rules! check {
+            ($($method:expr),*) => {$({
+                let method = $method;
+                let control = StepControl::new(1e-10, 0.0).expect("tolerances");
+                let run = Solve::new(&problem, &method, [t0, t0 + 1.5]).stops(stops);
+                let event = Event::new("a zero", |t, _: &V| (9.0 * t).sin());
+                let end = angle(&run.control(control).event(event).run(V::x()).expect("a run").y);
+                // The length of a step between two stops has their rounding.
+                let off = (end - exact).abs();
+                assert!(off < 1e-10 + 20.0 * f64::EPSILON * t0, "{}, {t0}: {off}", stringify!($method));
+                assert_eq!(calls.get(), 0, "{}, {t0}", stringify!($method));
+            })*};
+        }
+        check![
+            Doubling(CommutatorFree(CF4)),
+            Doubling(Rkmk::new(RK4, Exp)),
+            Rkmk::new(DOP853, Exp),
+            Rk(DOPRI5)
+        ];
     }
 }
 

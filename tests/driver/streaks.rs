@@ -2,7 +2,7 @@
 //! streaks end: at output times, at events, at the end of a call, or after each step.
 
 use std::cell::Cell;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use lieflow::catalog::{MethodSpec, MethodsByName};
 use lieflow::maps::{Cay, Exp};
@@ -10,6 +10,7 @@ use lieflow::methods::tableau::{BS3, DOP853, DOPRI5};
 use lieflow::methods::{Embedded, Rk, Rkmk, Taylor};
 use lieflow::nalgebra::Vector3;
 use lieflow::problems::{RigidBody, RigidBodyAttitude};
+use lieflow::solve::Status;
 use lieflow::{Event, Problem, Solution, Solve};
 
 type V = Vector3<f64>;
@@ -106,4 +107,18 @@ fn zeros_within_streaks_are_found() {
     for (i, t) in rings.iter().enumerate() {
         assert!((t - (2.0 * i as f64 + 1.0)).abs() < 1e-13, "{t}");
     }
+}
+
+/// Who is told of the progress may cancel the run: no further step is taken.
+#[test]
+fn no_step_is_taken_after_the_one_that_is_cancelled() {
+    let body = RigidBody::<f64>::new([1.0, 2.0, 3.0]).expect("a body");
+    let (flag, told) = (AtomicBool::new(false), Cell::new(0.0));
+    let progress = |t: f64| {
+        told.set(t);
+        flag.store(t > 0.35, Ordering::Relaxed);
+    };
+    let solve = Solve::new(&body, &Rk(DOPRI5), [0.0, 1e6]).dt(0.1).every(1);
+    let run = solve.cancel(&flag).progress(progress).run(START).expect("a run");
+    assert_eq!((run.status, run.t), (Status::Cancelled, told.get()));
 }
