@@ -17,6 +17,19 @@ const DELTA: f64 = 1.4901161193847656e-8;
 /// δ of the law of commutators: δ³ = 2ε, and the δ²\[u, v\] that a missing bracket leaves is 3e5 ε.
 const SMALL: f64 = 1.0 / 131072.0;
 
+/// How far ‖moved − tangent‖² − ‖y − tangent‖² is from its change to first order, for y moved by δ along its tangent, and the
+/// size of these squares. Inner products are by distances from `zero`.
+fn off_direction<Y: Metric<Scalar = f64>>(
+    [y, moved]: [&Y; 2],
+    [tangent, zero]: [&Y; 2],
+) -> (f64, f64) {
+    let square = |a: &Y, b: &Y| a.distance(b).powi(2);
+    let (length, size) = (square(tangent, zero), square(y, zero));
+    let inner = 0.5 * (length + size - square(tangent, y));
+    let change = square(moved, tangent) - square(y, tangent);
+    ((change - 2.0 * DELTA * (inner - length)).abs(), 1.0 + length + size)
+}
+
 /// The laws of `group` with `psi`, at `cases` random elements of the algebra of standard deviation
 /// `sigma`:
 ///
@@ -26,8 +39,8 @@ const SMALL: f64 = 1.0 / 131072.0;
 ///   of the group, in each part of it;
 /// - dΨ⁻¹: Ψ(u + δ dΨ_u⁻¹v) = Ψ(δv)Ψ(u) to first order in δ, the definition of dΨ (8);
 /// - action: (Ψ(u)Ψ(v))x = Ψ(u)(Ψ(v)x) for a vector x;
-/// - tangents: Ψ(δv)g and Ψ(δw)g are δ‖vg − wg‖ apart to first order in δ, for g = Ψ(u), and so are Ψ(δv)x and Ψ(δw)x. A
-///   tangent of the wrong sign is not seen, since this compares lengths.
+/// - tangents: Ψ(δv)g and Ψ(δw)g are δ‖vg − wg‖ apart to first order in δ, for g = Ψ(u), and so are Ψ(δv)x and Ψ(δw)x.
+///   ‖Ψ(δv)g − vg‖² − ‖g − vg‖² = 2δ⟨vg, g − vg⟩ to first order, and likewise for x: this sees the sign.
 ///
 /// # Errors
 /// [`Error::Unsupported`] when the map has no formula on the group; a map's refusal of a random u.
@@ -124,11 +137,17 @@ where
         };
         let lengths = 1.0 + (group.norm(&v) + group.norm(&w)).powi(2);
         let of_g = DELTA * tangent(&v).distance(&tangent(&w));
-        let gap = (product(&near, &g).distance(&product(&other, &g)) - of_g).abs();
+        let moved = product(&near, &g);
+        let gap = (moved.distance(&product(&other, &g)) - of_g).abs();
         tangents.see(gap, n * lengths * size_of(&g), 1.0, place);
+        let (gap, size) = off_direction([&g, &moved], [&tangent(&v), &tangent(&group.zero())]);
+        tangents.see(gap, n * lengths * size, 1.0, place);
         let of_x = DELTA * generated(&v).distance(&generated(&w));
-        let gap = (apply(&near, &x).distance(&apply(&other, &x)) - of_x).abs();
+        let moved = apply(&near, &x);
+        let gap = (moved.distance(&apply(&other, &x)) - of_x).abs();
         tangents.see(gap, n * lengths * (1.0 + x.size()), 1.0, place);
+        let (gap, size) = off_direction([&x, &moved], [&generated(&v), &generated(&group.zero())]);
+        tangents.see(gap, n * lengths * size, 1.0, place);
     }
     Ok(vec![bracket, identity, closure, commutators, inverse, action, tangents])
 }

@@ -21,6 +21,8 @@ enum Fault {
     DroppedBracket,
     SwappedAction,
     SwappedProduct,
+    WrongTangent,
+    WrongVelocity,
 }
 
 /// SO(3) × SO(3) with a fault.
@@ -84,10 +86,16 @@ impl LieGroup for Broken {
         }
     }
     fn tangent(&self, v: &(V, V), g: &Self::Elem, out: &mut Self::Elem) {
-        self.0.tangent(v, g, out);
+        match self.1 {
+            Fault::WrongTangent => self.0.tangent(&(v.0, -v.1), g, out),
+            _ => self.0.tangent(v, g, out),
+        }
     }
     fn apply_algebra(&self, v: &(V, V), x: &(V, V), y: &mut (V, V)) {
-        self.0.apply_algebra(v, x, y);
+        match self.1 {
+            Fault::WrongVelocity => self.0.apply_algebra(&(v.0, -v.1), x, y),
+            _ => self.0.apply_algebra(v, x, y),
+        }
     }
     fn distance(&self, a: &Self::Elem, b: &Self::Elem) -> f64 {
         self.0.distance(a, b)
@@ -184,5 +192,7 @@ fn the_whole_product_holds_and_each_fault_is_found() {
 
     assert!(commutator_gap(Fault::DroppedBracket) > 0.5);
     assert!(!broken_laws(Fault::SwappedProduct).is_empty());
+    assert!(!broken_laws(Fault::WrongTangent).is_empty());
+    assert!(!broken_laws(Fault::WrongVelocity).is_empty());
     assert!(two_spins(Fault::SwappedAction) > 0.1);
 }
