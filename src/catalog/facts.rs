@@ -5,6 +5,7 @@
 use core::fmt;
 
 use super::recipe::Recipe;
+use crate::maps::{MAPS, MapInfo};
 
 /// A method that scene files can name.
 #[derive(Clone, Copy, Debug)]
@@ -35,9 +36,23 @@ pub struct MethodInfo {
 }
 
 impl MethodInfo {
-    /// Does the method take a coordinate map (and, with exp, the cut q of the Baker series)?
+    /// Does the method take a coordinate map?
     pub fn takes_map(&self) -> bool {
         self.maps != Maps::None
+    }
+
+    /// Does the method take the cut q of the Baker series, with exp?
+    pub fn takes_q(&self) -> bool {
+        self.maps == Maps::All
+    }
+
+    /// The coordinate maps that the method takes.
+    pub fn takes(&self) -> impl Iterator<Item = &'static MapInfo> {
+        MAPS.iter().filter(|map| match self.maps {
+            Maps::None => false,
+            Maps::All => true,
+            Maps::Odd => map.odd,
+        })
     }
 
     /// Does the method preserve this?

@@ -8,7 +8,6 @@ use std::time::Duration;
 
 use lieflow::catalog::{Family, MethodSpec, TABLEAUS, all_methods};
 use lieflow::check::{Finding, Record, Reference, Subject, Trial, TrialSteps, runs_agree};
-use lieflow::maps::MAPS;
 use lieflow::problems::Origin;
 use lieflow::solve::Next;
 use lieflow::{SaveAt, StepControl, TimeGrid};
@@ -230,7 +229,7 @@ fn every_method() -> Vec<MethodSpec> {
             true => names.map(|name| Some(String::from(name))).collect(),
             false => vec![None],
         };
-        let maps: Vec<_> = names(info.takes_map(), &mut MAPS.iter().map(|map| map.name));
+        let maps: Vec<_> = names(info.takes_map(), &mut info.takes().map(|map| map.name));
         let tableaus: Vec<_> = names(info.takes_tableau, &mut TABLEAUS.iter().map(|t| t.name));
         for map in &maps {
             for tableau in &tableaus {

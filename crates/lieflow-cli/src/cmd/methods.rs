@@ -37,6 +37,8 @@ struct MethodEntry {
     #[serde(skip)]
     says_order: Order,
     maps: Vec<&'static str>,
+    #[serde(skip)]
+    takes_q: bool,
     tableaus: Vec<&'static str>,
     preserves: String,
     cost: String,
@@ -79,13 +81,14 @@ fn method_entry(info: &MethodInfo, fits: impl Fn(&MethodSpec) -> bool) -> Option
         order: info.order.number(),
         says_order: info.order,
         maps: Vec::new(),
+        takes_q: info.takes_q(),
         tableaus: Vec::new(),
         preserves: info.preserves_in_words(),
         cost: info.cost.to_string(),
         source: info.source,
     };
     if info.takes_map() {
-        let names = MAPS.iter().map(|map| map.name);
+        let names = info.takes().map(|map| map.name);
         entry.maps = names.filter(|map| fits(&MethodSpec::new(info.name, Some(map)))).collect();
     }
     let base = MethodSpec { map: entry.maps.first().map(|&map| map.into()), ..plain };
@@ -306,7 +309,8 @@ fn in_words(listing: &Listing) -> String {
     let mut text = String::new();
     let takes = |method: &MethodEntry| match (&method.maps[..], &method.tableaus[..]) {
         ([], []) => "",
-        (_, []) => "map, q",
+        (_, []) if method.takes_q => "map, q",
+        (_, []) => "map",
         ([], _) => "tableau",
         _ => "map, q, tableau",
     };
@@ -445,7 +449,8 @@ fn tableau_in_words(TableauInfo { name, order, stages, pair, .. }: &TableauInfo)
 
 /// Everything about a map.
 fn map_in_words(map: &MapInfo) -> String {
-    let takes = all_methods().filter(|info| info.takes_map()).map(|info| info.name);
+    let takes = all_methods().filter(|info| info.takes().any(|one| one.name == map.name));
+    let takes = takes.map(|info| info.name);
     let takes: Vec<_> = takes.collect();
     let mut text = format!("{}\n", map.name);
     text += &wrap(&format!("A coordinate map: {}.", map.summary), " ");

@@ -3,7 +3,6 @@
 use std::collections::HashSet;
 
 use lieflow::catalog::{Family, MethodInfo, MethodSpec, Property, TABLEAUS, all_methods};
-use lieflow::maps::MAPS;
 use lieflow::names::same;
 
 use crate::error::CliError;
@@ -100,7 +99,7 @@ impl Candidate {
         for info in all_methods() {
             let none = [None];
             let maps: Vec<Option<&str>> = match info.takes_map() {
-                true => MAPS.iter().map(|map| Some(map.name)).collect(),
+                true => info.takes().map(|map| Some(map.name)).collect(),
                 false => none.into(),
             };
             let tableaus: Vec<Option<&str>> = match info.takes_tableau {
