@@ -4,13 +4,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use lieflow::solve::Next;
 use lieflow_model::problem::Watcher;
-use lieflow_model::schema::{Branch, Component, Measure, Observable, Row};
+use lieflow_model::schema::{Branch, Component, Measure, Observable, Row, length};
 use lieflow_timing::cpu_seconds;
 
 use super::shown::{OwnRows, OwnZeros, Shown};
 use super::signs::changes_of_sign;
 use super::watch::Watch;
-use crate::measure::norm;
 use crate::output::Kind;
 
 /// The part of a step at the end of a run where a zero may be of one run only, by rounding.
@@ -59,7 +58,7 @@ pub(super) struct Apart {
 pub(super) struct Gap {
     /// The distance.
     pub(super) absolute: f64,
-    /// The distance in sizes of the part; that itself, where it is an angle.
+    /// The distance in sizes of the part; that itself, where it is an angle. NaN where no finite size is left.
     pub(super) relative: f64,
 }
 
@@ -228,7 +227,7 @@ impl Apart {
         for (largest, observable) in self.derived.iter_mut().zip(derived_of(watch)) {
             let [a, b] = [&a[observable], &b[observable]];
             largest.gap = larger(largest.gap, Measure::Length.distance(a, b));
-            largest.size = largest.size.max(norm(a));
+            largest.size = largest.size.max(length(a));
         }
         let parts = parts_of(watch).zip(sizes);
         let own = self.parts.iter_mut().zip(&mut self.columns);
@@ -241,9 +240,8 @@ impl Apart {
             let absolute = part.measure.distance(a, b);
             // Where the part is larger than elsewhere, so may be its error.
             let in_sizes = |size: f64| match absolute {
-                0.0 => 0.0,
                 angle if part.measure.is_angle() => angle,
-                length => length / size.max(norm(a)),
+                absolute => relative(absolute, size.max(length(a))),
             };
             largest.see(t, Gap { absolute, relative: in_sizes(size.largest) });
             largest.of_middle = larger(largest.of_middle, in_sizes(size.middle));
@@ -279,6 +277,15 @@ fn nearest_zero(g: impl Fn(f64) -> f64, t: f64, run: &Shown<'_>) -> f64 {
     };
     // The smaller one, or the one that is a number.
     on_side(1.0).min(on_side(-1.0))
+}
+
+/// A distance in sizes. Where one of the two is out of the range of numbers, it is NaN.
+fn relative(distance: f64, size: f64) -> f64 {
+    match distance {
+        _ if !(distance.is_finite() && size.is_finite()) => f64::NAN,
+        0.0 => 0.0,
+        distance => distance / size,
+    }
 }
 
 /// The larger of two distances; NaN, if one is.

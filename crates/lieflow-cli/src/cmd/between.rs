@@ -21,7 +21,7 @@ const SELDOM: u64 = 8;
 const LOOKED_AT: u64 = 64;
 const POINTS: u32 = 101;
 
-/// A row before: its time, the value, and the zeros up to there.
+/// A row before, at which the function is not 0: its time, the value, and the zeros up to there.
 #[derive(Clone, Copy)]
 struct Before {
     t: f64,
@@ -35,6 +35,8 @@ pub(super) struct Between {
     direction: Direction,
     value: ValueOfRow,
     before: Option<Before>,
+    /// The time of the last row, and the zeros up to there, also where the function is 0.
+    last_row: Option<(f64, u64)>,
     /// The rows before which zeros were missed.
     missed: u64,
     rows: u64,
@@ -82,6 +84,7 @@ impl Between {
             direction,
             value,
             before: None,
+            last_row: None,
             missed: 0,
             rows: 0,
             largest: 0.0,
@@ -96,11 +99,13 @@ impl Between {
         self.rows += 1;
         self.largest = self.largest.max(value.abs());
         self.note_value(value, (t, row));
-        if let Some(before) = self.before
+        let before = self.before.map(|before| (before.t, before.zeros)).or(self.last_row);
+        if let Some((before, had)) = before
             && self.rows <= LOOKED_AT
         {
-            self.look_between(before.t, (t, row), zeros - before.zeros);
+            self.look_between(before, (t, row), zeros - had);
         }
+        self.last_row = Some((t, zeros));
         if value.abs() <= NEAR_ZERO * self.largest {
             return;
         }
@@ -114,6 +119,16 @@ impl Between {
     /// The end of a step.
     pub(super) fn see_end_of_step(&mut self, t: f64, row: Row<'_>) {
         self.note_value((self.value)(t, row), (t, row));
+    }
+
+    /// What was seen so far, also where no row is: the largest absolute value, and whether each value is rounding.
+    pub(super) fn seen(&self) -> [f64; 2] {
+        [self.largest_anywhere, f64::from(u8::from(self.is_rounding))]
+    }
+
+    /// Goes on from what an earlier part of the run has seen.
+    pub(super) fn go_on_from(&mut self, [largest, is_rounding]: [f64; 2]) {
+        (self.largest_anywhere, self.is_rounding) = (largest, is_rounding != 0.0);
     }
 
     /// A value of the function with this row.
@@ -164,7 +179,7 @@ impl Between {
     /// reached.
     pub(super) fn note(&self, seen: &EventSummary, stop_after: Option<u64>) -> Option<String> {
         let name = &self.name;
-        if self.largest == 0.0 && self.rows > 1 {
+        if self.largest_anywhere == 0.0 && self.rows > 1 {
             return Some(format!("event `{name}`: its function is zero all the time"));
         }
         if self.is_rounding(seen.count) {

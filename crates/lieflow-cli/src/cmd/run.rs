@@ -203,7 +203,7 @@ pub fn run_scene(
     }
     output::make_folder(folder)?;
     let _lock = output::Lock::of(folder)?;
-    let (mut state, drifts, driver) = match resume {
+    let (mut state, seen, driver) = match resume {
         true => RunState::open(folder, scene.fingerprint)?,
         false => (RunState::begin(folder, scene.fingerprint)?, Vec::new(), None),
     };
@@ -222,7 +222,7 @@ pub fn run_scene(
             }
             false => kept.see(kind, t, schema.row(numbers)),
         })?;
-        kept.watched.iter_mut().zip(drifts).for_each(|(law, drift)| law.go_on_from(drift));
+        kept.go_on_from(&seen);
     }
     let begun_at = kept.rows.ends().map_or(scene.grid.t_span()[0], |[_, (t, _)]| t);
     kept.state = Some(state);
@@ -294,8 +294,12 @@ pub fn run_scene(
         between.note(seen, event.stop_after.filter(|_| completed && !ended))
     }));
     notes.extend(kept.singular_in_words());
-    warnings.extend(drift.iter().filter(|(_, drift)| drift.breaks_a_promise()).map(broken_promise));
-    warnings.extend(drift.iter().filter(|(_, drift)| drift.is_of_rows()).map(drift_of_rows));
+    let (known, unknown): (Vec<_>, Vec<_>) = drift.iter().partition(|(_, drift)| drift.is_known());
+    let known = known.into_iter();
+    warnings.extend(unknown.into_iter().map(unknown_drift));
+    warnings
+        .extend(known.clone().filter(|(_, drift)| drift.breaks_a_promise()).map(broken_promise));
+    warnings.extend(known.filter(|(_, drift)| drift.is_of_rows()).map(drift_of_rows));
     let out_of_range = columns.iter().zip(&kept.not_finite).filter(|(_, (count, _))| *count > 0);
     warnings.extend(out_of_range.map(|(column, (count, first))| {
         format!(
@@ -450,7 +454,7 @@ fn check_errors(
     })?;
     let advise = when != ErrorCheck::Never && scene.error_check;
     let poor = check.warning(&checked.accuracy, advise.then_some(seconds));
-    checked.warnings.splice(0..0, poor);
+    checked.warnings.splice(0..0, checked.accuracy.unknown_in_words().chain(poor));
     Ok(Some(checked))
 }
 
@@ -499,6 +503,12 @@ fn no_constant((name, drift): (&String, &Drift)) -> String {
          motion. Look at its formula, or at what acts on the motion",
         output::rough(drift.max),
         output::rough(drift.max / drift.size)
+    )
+}
+
+fn unknown_drift((name, _): (&String, &Drift)) -> String {
+    format!(
+        "the drift of `{name}` cannot be stated: a value of it, or its size, is not a finite number"
     )
 }
 

@@ -49,8 +49,9 @@ pub(super) fn in_words(summary: &Summary, folder: &Path, page: Option<&str>) -> 
         event.time_error_in_words().iter().for_each(|error| told += &format!(", {error}"));
         line(told);
     }
-    let (kept, mut drifts): (Vec<_>, Vec<_>) =
-        summary.drift.iter().partition(|(_, drift)| drift.max <= drift.rounding);
+    // A warning names the others.
+    let known = summary.drift.iter().filter(|(_, drift)| drift.is_known());
+    let (kept, mut drifts): (Vec<_>, Vec<_>) = known.partition(|(_, drift)| drift.is_rounding());
     let more = |names: usize| names.saturating_sub(DRIFTS);
     if !kept.is_empty() {
         let names: Vec<&str> = kept.iter().take(DRIFTS).map(|(name, _)| name.as_str()).collect();

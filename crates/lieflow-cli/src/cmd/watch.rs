@@ -14,12 +14,12 @@ use super::between::Between;
 use super::room::Room;
 use crate::error::CliError;
 use crate::output::{
-    self, Chosen, Drift, EventSummary, Kind, Progress, RowFile, RowSample, RunState, Watched,
+    self, Chosen, Drift, EventSummary, Kind, Progress, RowFile, RowSample, RunState, Seen, Watched,
 };
 use lieflow_model::problem::Figure;
 use lieflow_model::problem::{Model, Outcome, Plan, Watcher};
 use lieflow_model::scene::Scene;
-use lieflow_model::schema::{Branch, Observable, Row, Schema};
+use lieflow_model::schema::{Branch, Measure, Observable, Row, Schema};
 
 /// The quantities of a run: those that the scene names first, then those of its events, the state, the invariants
 /// and those that are drawn.
@@ -207,10 +207,7 @@ impl<'a> Watch<'a> {
     pub(super) fn errors(&self, t: f64, row: Row<'_>) -> Option<BTreeMap<String, f64>> {
         let exact = self.exact(t)?;
         let exact = self.model.schema().row(&exact);
-        let distance = |part: &Observable| {
-            let pairs = row[part].iter().zip(&exact[part]);
-            pairs.map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
-        };
+        let distance = |part: &Observable| Measure::Length.distance(&row[part], &exact[part]);
         Some(self.state.iter().map(|part| (part.name.into(), distance(part))).collect())
     }
 }
@@ -339,6 +336,28 @@ impl<'a> Recorder<'a> {
         self.room.check(self.bytes())
     }
 
+    /// What was seen so far where no row is, too. The rows alone do not bring it back: two numbers of each written quantity
+    /// and of each event, and then a drift of each invariant, -1 where there is none.
+    fn seen_anywhere(&self) -> Seen {
+        let singular = self.singular.iter().flat_map(|&(far, t)| [far, t]);
+        let between = self.between.iter().flat_map(Between::seen);
+        let drifts = self.watched.iter().map(|law| law.at_ends_of_steps().unwrap_or(-1.0));
+        singular.chain(between).chain(drifts).collect()
+    }
+
+    /// Goes on from what an earlier part of the run has seen, once its rows are shown again. At the start that is nothing.
+    pub(super) fn go_on_from(&mut self, seen: &[f64]) {
+        let (pairs, _) = seen.as_chunks();
+        let (of_angles, of_events) = pairs.split_at(self.singular.len().min(pairs.len()));
+        let singular = self.singular.iter_mut().zip(of_angles);
+        singular.for_each(|(nearest, &[far, t])| *nearest = (far, t));
+        let between = self.between.iter_mut().zip(of_events);
+        between.for_each(|(between, seen)| between.go_on_from(*seen));
+        let drifts = seen.iter().skip(2 * (self.singular.len() + self.between.len()));
+        let drifts = drifts.map(|&x| (x != -1.0).then_some(x));
+        self.watched.iter_mut().zip(drifts).for_each(|(law, drift)| law.go_on_from(drift));
+    }
+
     /// How near the Euler angles of a row are to where they are singular.
     fn see_singular(&mut self, t: f64, row: Row<'_>) {
         for (nearest, angles) in self.singular.iter_mut().zip(&self.watch.written) {
@@ -450,9 +469,9 @@ impl Watcher for Recorder<'_> {
     fn state(&mut self, bytes: &[u8]) {
         if !self.has_ended() {
             let done = self.flush();
-            let drifts: Vec<_> = self.watched.iter().map(Watched::at_ends_of_steps).collect();
+            let seen = self.seen_anywhere();
             let done = done.and_then(|()| match &mut self.state {
-                Some(state) => state.save(&drifts, bytes),
+                Some(state) => state.save(&seen, bytes),
                 None => Ok(()),
             });
             self.keep(done);

@@ -15,7 +15,7 @@ use lieflow_counting::operations;
 use lieflow_figures::number::typed;
 use lieflow_model::problem::{Model, Plan, Rows as Watched, Sink, Steps};
 use lieflow_model::scene::Scene;
-use lieflow_model::schema::{Component, Observable, Row, Schema};
+use lieflow_model::schema::{Component, Observable, Row, Schema, length};
 use lieflow_timing::cpu_seconds;
 
 /// Where the end comes from that errors are measured against.
@@ -168,11 +168,6 @@ pub struct Judge<'a> {
     pub reference: Reference,
     /// The flag that ends each run.
     stop: &'a AtomicBool,
-}
-
-/// The length of a vector.
-pub(crate) fn norm(x: &[f64]) -> f64 {
-    x.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
 impl<'a> Judge<'a> {
@@ -398,9 +393,9 @@ impl<'a> Judge<'a> {
             let [x, right, end] =
                 [&row, &right, &end].map(|row| &row[observable][part.columns.clone()]);
             let distance = part.measure.distance(x, right);
-            let size = if part.measure.is_angle() { 1.0 } else { norm(right).max(norm(end)) };
+            let size = if part.measure.is_angle() { 1.0 } else { length(right).max(length(end)) };
             let size_within = |(_, state): &(f64, Vec<f64>)| {
-                norm(&self.schema.row(state)[observable][part.columns.clone()])
+                length(&self.schema.row(state)[observable][part.columns.clone()])
             };
             let within = self.within.iter().map(size_within).fold(0.0, f64::max);
             relative(distance, if size < RETURNS * within { within } else { size })
@@ -424,8 +419,13 @@ fn size_of_value(value: f64, terms: f64) -> f64 {
     if value.abs() > 1e-3 * terms || terms.is_nan() { value.abs() } else { terms }
 }
 
+/// The gap in sizes; NaN where the size is out of the range of numbers.
 fn relative(gap: f64, size: f64) -> f64 {
-    if size == 0.0 { gap.abs() } else { (gap / size).abs() }
+    match size {
+        0.0 => gap.abs(),
+        size if size.is_infinite() => f64::NAN,
+        size => (gap / size).abs(),
+    }
 }
 
 /// The rows that a run gives while it is timed.

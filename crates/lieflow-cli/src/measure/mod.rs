@@ -16,8 +16,8 @@ pub use checks::checks;
 use curve::OFF;
 pub use curve::{Curve, Reached, WorkPoint, pareto};
 pub use journal::{JOURNAL, Journal};
+pub(crate) use judge::RETURNS;
 pub use judge::{Course, Judge, MOST_ROWS, Reference, Rounding, Rows};
-pub(crate) use judge::{RETURNS, norm};
 pub use kept::Kept;
 
 use std::collections::VecDeque;

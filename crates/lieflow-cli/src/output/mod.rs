@@ -14,7 +14,7 @@ pub use files::{Lock, make_folder, remove_old, write_figures, write_file, write_
 pub use lieflow_figures::number::{duration, number, rough, size};
 pub use progress::Progress;
 pub use rows::{EVENTS, RowFile, TRAJECTORY};
-pub use state::{Drifts, Kind, ROWS, Records, RunState, ShownRows};
+pub use state::{Kind, ROWS, Records, RunState, Seen, ShownRows};
 pub use summary::{
     Accuracy, Chosen, Distance, Drift, EventSummary, FoundBy, MethodSummary, PartError, SUMMARY,
     Summary, TIME, Watched, count_in_words, remove_summary, units_of,

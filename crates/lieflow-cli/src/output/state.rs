@@ -7,9 +7,9 @@
 //! | 1 | the name of the format and its version |
 //! | 2 | what the run is of: the version of the program, and the scene |
 //! | 3 | of `run.rows` at that time: the words of a record, the records, their check sum |
-//! | 1 | the number of the drifts |
+//! | 1 | the number of what was seen where no row is |
 //! | 1 | a check sum of the other words, the driver's too |
-//! | as many | the largest drifts so far at the ends of steps, which no row shows; NaN where there is none |
+//! | as many | what was seen where no row is, as at the ends of steps; none at the start of a run |
 //! | the rest | the state of the driver; nothing at the start of a run |
 //!
 //! `run.rows` is what the run showed, in records of one length: what it is ([`Kind`]), t, the numbers of the row.
@@ -30,13 +30,13 @@ const STATE: &str = "run.state";
 pub const ROWS: &str = "run.rows";
 
 /// The name of the format, and its version.
-const FORMAT: u64 = u64::from_le_bytes(*b"lf-run\x00\x03");
+const FORMAT: u64 = u64::from_le_bytes(*b"lf-run\x00\x04");
 
 /// The words before the check sum.
 const HEAD: usize = 7;
 
-/// The largest drift of each law at the ends of steps.
-pub type Drifts = Vec<Option<f64>>;
+/// The numbers that a run saw where it has no row.
+pub type Seen = Vec<f64>;
 
 /// Records are written when they have this many bytes.
 const BYTES: usize = 1 << 16;
@@ -173,31 +173,29 @@ impl RunState {
         Ok(state)
     }
 
-    /// The state of a run of the scene with this fingerprint, its drifts at the ends of steps, and the state of its driver;
+    /// The state of a run of the scene with this fingerprint, what it saw where it has no row, and the state of its driver;
     /// none at its start.
     ///
     /// # Errors
     /// There is no saved run. The saved run is damaged. It belongs to another scene or to another version of the
     /// program.
-    pub fn open(folder: &Path, scene: u64) -> Result<(Self, Drifts, Option<Vec<u8>>), CliError> {
+    pub fn open(folder: &Path, scene: u64) -> Result<(Self, Seen, Option<Vec<u8>>), CliError> {
         let path = folder.join(STATE);
         let bytes = fs::read(&path).map_err(CliError::io("read", &path))?;
         let mut state = Self::new(folder, scene);
         let (head, rest) = bytes.split_at(bytes.len().min(8 * (HEAD + 1)));
         let head: Vec<u64> = words(head).collect();
-        let &[FORMAT, version, of, length, records, rows, drifts, check] = &head[..] else {
+        let &[FORMAT, version, of, length, records, rows, seen, check] = &head[..] else {
             return Err(state.damaged());
         };
         if check != sum_of(&head[..HEAD], rest) {
             return Err(state.damaged());
         }
-        let of_drifts = usize::try_from(drifts).ok().and_then(|drifts| drifts.checked_mul(8));
-        let Some((drifts, driver)) = of_drifts.and_then(|bytes| rest.split_at_checked(bytes))
-        else {
+        let of_seen = usize::try_from(seen).ok().and_then(|seen| seen.checked_mul(8));
+        let Some((seen, driver)) = of_seen.and_then(|bytes| rest.split_at_checked(bytes)) else {
             return Err(state.damaged());
         };
-        let drifts =
-            words(drifts).map(f64::from_bits).map(|x| (!x.is_nan()).then_some(x)).collect();
+        let seen = words(seen).map(f64::from_bits).collect();
         if version != state.owner[0] {
             let message = "the run was begun by another version of the program: start it again \
                            without --resume";
@@ -209,7 +207,7 @@ impl RunState {
             return Err(CliError::Message(message.into()));
         }
         state.shown = Shown { length, records, sum: rows };
-        Ok((state, drifts, (!driver.is_empty()).then(|| driver.to_vec())))
+        Ok((state, seen, (!driver.is_empty()).then(|| driver.to_vec())))
     }
 
     fn damaged(&self) -> CliError {
@@ -302,20 +300,20 @@ impl RunState {
         Ok(())
     }
 
-    /// The run is in this state of its driver, with these drifts, after what it showed so far.
+    /// The run is in this state of its driver, after what it showed so far. `seen` is what it saw where it has no row.
     ///
     /// # Errors
     /// A file cannot be written: then the state before is there.
-    pub fn save(&mut self, drifts: &[Option<f64>], driver: &[u8]) -> Result<(), CliError> {
+    pub fn save(&mut self, seen: &[f64], driver: &[u8]) -> Result<(), CliError> {
         self.flush()?;
         // The records that a state counts are on the disk before it.
         let kept = self.file.as_ref().map_or(Ok(()), File::sync_data);
         kept.map_err(CliError::io("write", &self.folder.join(ROWS)))?;
         let Shown { length, records, sum } = self.shown;
         let [version, scene] = self.owner;
-        let head: [u64; HEAD] = [FORMAT, version, scene, length, records, sum, drifts.len() as u64];
-        let drifts = drifts.iter().flat_map(|x| x.unwrap_or(f64::NAN).to_le_bytes());
-        let rest: Vec<u8> = drifts.chain(driver.iter().copied()).collect();
+        let head: [u64; HEAD] = [FORMAT, version, scene, length, records, sum, seen.len() as u64];
+        let seen = seen.iter().flat_map(|x| x.to_le_bytes());
+        let rest: Vec<u8> = seen.chain(driver.iter().copied()).collect();
         let head = head.into_iter().chain([sum_of(&head, &rest)]);
         let mut bytes: Vec<u8> = head.flat_map(u64::to_le_bytes).collect();
         bytes.extend(rest);

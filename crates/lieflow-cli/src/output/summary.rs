@@ -218,7 +218,7 @@ pub struct PartError {
 pub struct Distance {
     /// The distance; an angle in radians where the part is a rotation.
     pub absolute: f64,
-    /// The distance in sizes of the part; an angle in radians where it is a rotation.
+    /// The distance in sizes of the part; an angle in radians where it is a rotation. NaN where no finite size is left.
     pub relative: f64,
     /// The angle, where the part is a rotation.
     pub degrees: Option<f64>,
@@ -239,7 +239,25 @@ impl Accuracy {
         self.parts.iter().max_by(|a, b| a.largest.rank().total_cmp(&b.largest.rank()))
     }
 
-    /// The relative error of the part that is worst.
+    /// The part with the largest relative error, of those whose error is known.
+    pub fn worst_known(&self) -> Option<&PartError> {
+        let known = self.parts.iter().filter(|part| part.largest.is_known());
+        known.max_by(|a, b| a.largest.relative.total_cmp(&b.largest.relative))
+    }
+
+    /// The parts whose error is not known, each in a sentence.
+    pub fn unknown_in_words(&self) -> impl Iterator<Item = String> {
+        let unknown = self.parts.iter().filter(|part| !part.largest.is_known());
+        unknown.map(|part| {
+            format!(
+                "the error of `{}` cannot be stated: its size, or its distance from what it should be, is not a finite \
+                 number",
+                part.name
+            )
+        })
+    }
+
+    /// The relative error of the part that is worst. NaN if that of a part is.
     pub fn relative(&self) -> f64 {
         self.worst().map_or(f64::NAN, |worst| worst.largest.relative)
     }
@@ -266,6 +284,7 @@ impl Accuracy {
     /// As "about 8 digits are right".
     pub fn rightness_in_words(&self) -> String {
         match self.digits {
+            _ if self.relative().is_nan() => "the number of right digits is not known".into(),
             0 => "no digit is right".into(),
             1 => self.digits_in_words() + " is right",
             _ => self.digits_in_words() + " are right",
@@ -283,11 +302,12 @@ impl Accuracy {
         let in_words = |part: &PartError| {
             let PartError { name, largest, t, at_end } = part;
             let (error, unit) = largest.in_words();
-            let told = format!("{name} {error} {unit} {}", self.when(*t));
+            let told = format!("{name} {error}{unit} {}", self.when(*t));
+            let (end, of_end) = at_end.in_words();
             if *t == self.t_end {
                 told
             } else {
-                format!("{told}, at the end {}", at_end.in_words().0)
+                format!("{told}, at the end {end}{}", if unit.is_empty() { of_end } else { "" })
             }
         };
         let mut told: Vec<_> = parts.into_iter().take(PARTS).map(in_words).collect();
@@ -317,16 +337,22 @@ impl Accuracy {
 }
 
 impl Distance {
-    /// The relative distance; infinite if it is NaN.
-    fn rank(&self) -> f64 {
-        if self.relative.is_nan() { f64::INFINITY } else { self.relative }
+    /// Is it a number?
+    fn is_known(&self) -> bool {
+        !self.relative.is_nan()
     }
 
-    /// The number and its unit, as "0.002" and "degrees", or "1.2e-9" and "of its size".
+    /// The relative distance; infinite if it is NaN.
+    fn rank(&self) -> f64 {
+        if self.is_known() { self.relative } else { f64::INFINITY }
+    }
+
+    /// The number and its unit, as "0.002" and " degrees", or "1.2e-9" and " of its size".
     fn in_words(&self) -> (String, &'static str) {
         match self.degrees {
-            Some(degrees) => (rough(degrees), "degrees"),
-            None => (rough(self.relative), "of its size"),
+            _ if !self.is_known() => ("not known".into(), ""),
+            Some(degrees) => (rough(degrees), " degrees"),
+            None => (rough(self.relative), " of its size"),
         }
     }
 }
@@ -449,12 +475,22 @@ pub struct Drift {
 }
 
 impl Drift {
+    /// Are the drift and the size of the quantity numbers? Otherwise nothing can be said of it.
+    pub fn is_known(&self) -> bool {
+        self.max.is_finite() && self.rounding.is_finite()
+    }
+
+    /// Does rounding explain it?
+    pub fn is_rounding(&self) -> bool {
+        self.is_known() && self.max <= self.rounding
+    }
+
     /// Did it move by far more at rows within steps than at the ends of the steps? Of what the method keeps there to rounding,
     /// any more.
     pub fn is_of_rows(&self) -> bool {
-        self.max_at_ends_of_steps.is_some_and(|at_ends| {
+        self.max_at_ends_of_steps.filter(|at_ends| at_ends.is_finite()).is_some_and(|at_ends| {
             let times = if self.promised && at_ends <= self.rounding { 1.0 } else { OF_ROWS };
-            self.max > times * at_ends.max(self.rounding)
+            self.is_known() && self.max > times * at_ends.max(self.rounding)
         })
     }
 
@@ -467,9 +503,10 @@ impl Drift {
     /// Did it move by far more than the relative error of the run explains? Then it is no constant of the motion. A formula
     /// that is 0 may have terms as large as `numbers`, those of its row. In the motion without errors its value is `gap` away.
     pub fn is_of_the_motion(&self, error: f64, numbers: f64, gap: f64) -> bool {
-        let error = error.max(NO_CONSTANT / BEYOND);
-        let explained = self.rounding.max(error * self.size).max(f64::EPSILON * numbers).max(gap);
-        !self.promised && self.max > BEYOND * explained && !self.is_of_rows()
+        let least = error.max(NO_CONSTANT / BEYOND);
+        let explained = self.rounding.max(least * self.size).max(f64::EPSILON * numbers).max(gap);
+        let is_explained = !self.is_known() || error.is_nan() || self.max <= BEYOND * explained;
+        !self.promised && !is_explained && !self.is_of_rows()
     }
 }
 
@@ -530,6 +567,30 @@ impl Watched {
             promised,
             rounding: self.drift.explained_by_rounding(steps),
             size: self.drift.size,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A drift or a size that is no finite number is no rounding, and tells nothing of the motion. A promise of a value that is
+    /// no number is not kept.
+    #[test]
+    fn nothing_is_said_of_a_drift_that_is_not_known() {
+        let known =
+            Drift { max: 1.0, size: 1.0, rounding: 0.5, promised: true, ..Drift::default() };
+        assert!(known.breaks_a_promise() && !known.is_rounding());
+        for (max, rounding) in [(f64::NAN, 1.0), (f64::INFINITY, 1.0), (1.0, f64::INFINITY)] {
+            for promised in [true, false] {
+                let at_ends = Some(1e-9);
+                let drift =
+                    Drift { max, rounding, promised, max_at_ends_of_steps: at_ends, ..known };
+                assert!(!drift.is_known() && !drift.is_rounding() && !drift.is_of_rows());
+                assert!(!drift.is_of_the_motion(1e-9, 1.0, 0.0));
+                assert_eq!(drift.breaks_a_promise(), promised && !max.is_finite());
+            }
         }
     }
 }

@@ -23,6 +23,7 @@ mod room;
 mod run;
 mod same_bits;
 mod second_run;
+mod sizes;
 mod small;
 mod support;
 mod units;

@@ -61,6 +61,11 @@ fn events_that_never_come_or_are_missed_are_told() {
     let told = event("0*t", "");
     assert!(told.contains("note: event `z`: its function is zero all the time"), "{told}");
     assert!(told.contains("event z: never\n"), "{told}");
+    // It is zero at each row, and not between them.
+    let turns = "[[events]]\nname = \"z\"\nwhen = \"1 - cos(2*pi*t)\"\n";
+    folder.write("scene.toml", &SCENE.replace("every = 10", &format!("interval = 1\n{turns}")));
+    let told = folder.lieflow(&["run", "scene.toml", "--no-page", "--out", "out"]).ok();
+    assert!(told.contains("event z: 3 times") && !told.contains("zero all the time"), "{told}");
     let told = event("sqrt(m1^2 + m2^2 + m3^2) - sqrt(9.04)", "").replace('\n', " ");
     let rounding = told.contains("note: event `z`: its function is zero up to rounding, at most");
     assert!(rounding && !told.contains("WARNING"), "{told}");

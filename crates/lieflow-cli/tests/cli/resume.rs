@@ -334,6 +334,51 @@ fn the_drifts_at_the_ends_of_steps_go_on() {
     assert_eq!(drifts(&folder), whole);
 }
 
+/// What a run saw between its rows goes on, too. Only before its first state the pitch comes near to 90 degrees, between two
+/// rows, and the function of the event is not 0, at the end of a step with a row within it.
+#[test]
+fn what_was_seen_between_rows_goes_on() {
+    let folder = Folder::new();
+    let text = r#"[problem]
+kind = "rigid-motion"
+omega = ["5/cosh(t/300)^2", "rate*cos(roll)", "-rate*sin(roll)"]
+velocity = ["1e-3*exp(-((t-100.1)/1e-3)^2)", "0", "0"]
+[problem.let]
+roll = "1500*tanh(t/300)"
+rate = "-1.57*2*(t-60)/225*exp(-((t-60)/15)^2)"
+[method]
+name = "rkmk4"
+[time]
+t_span = [0.0, END]
+dt = 0.1
+[[events]]
+name = "pulse"
+when = "v1"
+[output]
+quantities = ["euler_zyx"]
+interval = 50.03
+error_check = false
+"#;
+    let end = if cfg!(debug_assertions) { "5e3" } else { "5e4" };
+    folder.write("scene.toml", &text.replace("END", end));
+    let args = ["run", "scene.toml", "--out", "out", "--no-page"];
+    folder.lieflow(&args).ok();
+    let whole = results(&folder, "out");
+    let notes = whole.2["notes"].to_string();
+    assert!(notes.contains("of its singular angle at t = 60:"), "{notes}");
+    assert!(!notes.contains("event"), "{notes}");
+    let mut child = folder.command(&args).stdout(Stdio::null()).spawn().unwrap();
+    until(&mut child, || {
+        fs::read(folder.path().join("out/run.state")).is_ok_and(|state| state.len() > 64)
+    });
+    child.kill().unwrap();
+    child.wait().unwrap();
+    folder.lieflow(&[&args[..], &["--resume"]].concat()).ok();
+    let resumed = results(&folder, "out");
+    assert_eq!(resumed.2, whole.2);
+    assert_eq!(resumed, whole);
+}
+
 /// With a limit of the size of a file, as on a full disk: the error names the file, what was written stays, and the
 /// run goes on when there is room.
 #[test]

@@ -280,14 +280,14 @@ impl System for Driven {
         .of_dimension(Dimension::ENERGY)
         .kept_where(|driven| driven.undriven(Law::by_the_flow(0)))
         .in_terms(|driven, y| {
-            driven.body.kinetic_energy(y) + driven.torques.weight.map_or(0.0, |w| w.norm())
+            driven.body.kinetic_energy(y) + driven.torques.weight.map_or(0.0, |w| length(&w))
         }),
         angle(),
         momentum_norm(),
         Q::number("vertical_momentum", "angular momentum about e3 in space", |_, _, (_, m)| m[2])
             .of_dimension(Dimension::ANGULAR_MOMENTUM)
             .kept_where(|driven| driven.undriven(Law::by_the_flow(1)))
-            .in_terms(|_, (_, m)| m.norm()),
+            .in_terms(|_, (_, m)| length(m)),
         attitude_defect(),
     ];
 

@@ -309,7 +309,7 @@ impl<R: TopCoordinates> System for Top<R> {
         .kept(R::LAWS[0])
         .in_terms(|top, y| {
             let Pose { mu, gamma, .. } = R::pose(y);
-            mu.dot(&top.spec.top.omega(&mu)) + top.spec.weight.norm() * gamma.norm()
+            mu.dot(&top.spec.top.omega(&mu)) + length(&top.spec.weight) * length(&gamma)
         }),
         Q::number("vertical_norm2", "square of the length of the vertical", |top, _, y| {
             top.spec.top.casimirs(&Top::<R>::momentum_and_vertical(y))[0]
@@ -322,7 +322,7 @@ impl<R: TopCoordinates> System for Top<R> {
         .kept(R::LAWS[2])
         .in_terms(|_, y| {
             let Pose { mu, gamma, .. } = R::pose(y);
-            mu.norm() * gamma.norm()
+            length(&mu) * length(&gamma)
         }),
         Q::number(
             "integral",
@@ -373,7 +373,7 @@ impl<R: TopCoordinates> System for Top<R> {
             let (mu, g) = body.exact()?.state(t)?;
             Ok(R::point(g, mu, g.tr_mul(&up)))
         };
-        (weight.norm() == 0.0).then(|| at(t1 - t0))
+        (*weight == Vector3::zeros()).then(|| at(t1 - t0))
     }
     fn warnings(&self) -> Vec<String> {
         self.spec.body.impossible()

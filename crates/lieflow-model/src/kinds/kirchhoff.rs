@@ -102,7 +102,7 @@ impl System for Body {
         .kept(Law::by_the_action(2)),
         Q::number("momenta_product", "product of the two momenta", |_, _, (mu, pi)| mu.dot(pi))
             .kept(Law::by_the_action(2))
-            .in_terms(|_, (mu, pi)| mu.norm() * pi.norm()),
+            .in_terms(|_, (mu, pi)| length(mu) * length(pi)),
     ];
 
     fn layer(&self) -> Layer {

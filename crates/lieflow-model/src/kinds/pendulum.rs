@@ -68,7 +68,7 @@ impl System for Pendulum {
         Q::number("energy", "energy", |pendulum, _, y| pendulum.pendulum.energy(y))
             .kept(Law::by_the_flow(2))
             .in_terms(|pendulum, (omega, q)| {
-                0.5 * omega.norm_squared() + pendulum.rate2.abs() * q.norm()
+                0.5 * omega.norm_squared() + pendulum.rate2.abs() * length(q)
             }),
         Q::number(
             "vertical_momentum",
@@ -76,7 +76,7 @@ impl System for Pendulum {
             |_, _, (omega, _)| omega[2],
         )
         .kept(Law::by_the_flow(1))
-        .in_terms(|_, (omega, q)| omega.norm() * q.norm()),
+        .in_terms(|_, (omega, q)| length(omega) * length(q)),
         Q::number("direction_norm2", "square of the length of the direction", |_, _, (_, q)| {
             q.norm_squared()
         })
@@ -85,7 +85,7 @@ impl System for Pendulum {
             omega.dot(q)
         })
         .kept(Law::by_the_action(2))
-        .in_terms(|_, (omega, q)| omega.norm() * q.norm()),
+        .in_terms(|_, (omega, q)| length(omega) * length(q)),
     ];
 
     fn layer(&self) -> Layer {

@@ -2,7 +2,7 @@
 
 pub(super) use faer::Mat;
 pub(super) use lieflow::Error;
-pub(super) use lieflow_runs::schema::{Dimension, Law, Numbers, Scale};
+pub(super) use lieflow_runs::schema::{Dimension, Law, Numbers, Scale, length};
 
 pub(super) use crate::problem::{
     Counting, Figure, Forms, Kind, Layer, PrincipalInertia, Property, Quantity, Start, System,

@@ -60,7 +60,7 @@ impl System for Spin {
         Q::numbers("moment", &["x1", "x2", "x3"], "the moment", |_, _, x, row| {
             row.extend(x.iter());
         }),
-        Q::number("moment_norm", "length of the moment", |_, _, x| x.norm())
+        Q::number("moment_norm", "length of the moment", |_, _, x| length(x))
             .kept(Law::by_the_action(2)),
     ];
 

@@ -313,11 +313,11 @@ impl Chain {
     /// The size of the terms of sums over the chain: each spin has an energy of some units.
     fn size(&self, s: &[Vector3<f64>]) -> f64 {
         match &self.of {
-            Of::Numbers(_, field) => sum_of_squares(s) * (1.0 + field.norm()),
+            Of::Numbers(_, field) => sum_of_squares(s) * (1.0 + length(field)),
             Of::Formulas(stated) => {
                 let Couplings { bonds, sites } = &stated.constant;
-                let bonds = bonds.iter().map(|bond| bond.exchange.norm() + bond.dm.norm());
-                let sites = sites.iter().map(|site| site.anisotropy.norm() + site.field.norm());
+                let bonds = bonds.iter().map(|bond| length(&bond.exchange) + length(&bond.dm));
+                let sites = sites.iter().map(|site| length(&site.anisotropy) + length(&site.field));
                 sum_of_squares(s).max(bonds.chain(sites).sum())
             }
         }

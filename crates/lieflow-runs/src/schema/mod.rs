@@ -2,11 +2,13 @@
 
 mod branch;
 mod dimension;
+mod measure;
 
 pub use branch::Branch;
 pub use branch::Branches;
 pub use dimension::{Dimension, Units};
 pub use lieflow::problems::{Law, Scale};
+pub use measure::{Measure, length};
 
 use core::ops::{Index, Range};
 use std::collections::HashSet;
@@ -14,39 +16,6 @@ use std::collections::HashSet;
 use lieflow::Error;
 use lieflow::catalog::{MethodInfo, Property};
 use lieflow::problems::Origin;
-
-/// How far two values of columns are from each other.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Measure {
-    /// The length of their difference.
-    #[default]
-    Length,
-    /// The angle between two rotations, given by their nine entries.
-    Rotation,
-    /// The angle between two rotations, given by quaternions.
-    Quaternion,
-}
-
-impl Measure {
-    /// Is the distance an angle, in radians?
-    pub fn is_angle(self) -> bool {
-        self != Measure::Length
-    }
-
-    /// The distance.
-    pub fn distance(self, a: &[f64], b: &[f64]) -> f64 {
-        let length = |sign: f64| {
-            let squares = a.iter().zip(b).map(|(a, b)| (a - sign * b).powi(2));
-            squares.sum::<f64>().sqrt()
-        };
-        match self {
-            Measure::Length => length(1.0),
-            // ‖A − B‖ = √8 sin(angle/2), and |p − q| = 2 sin(angle/4).
-            Measure::Rotation => 2.0 * (length(1.0) / 8.0_f64.sqrt()).min(1.0).asin(),
-            Measure::Quaternion => 4.0 * (length(1.0).min(length(-1.0)) / 2.0).min(1.0).asin(),
-        }
-    }
-}
 
 /// The numbers whose parts the columns of a quantity are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -28,7 +28,7 @@ impl Check<'_> {
         accuracy: &Accuracy,
         seconds: Option<f64>,
     ) -> Option<String> {
-        let worst = accuracy.worst()?;
+        let worst = accuracy.worst_known()?;
         let Distance { relative, degrees, .. } = worst.largest;
         if relative <= POOR || accuracy.found_by == FoundBy::ShortSteps {
             return None;
@@ -40,7 +40,9 @@ impl Check<'_> {
         let verdict = if relative <= USELESS { "inaccurate" } else { "not usable" };
         let when = accuracy.when(worst.t);
         let wrong = format!("`{}` is wrong by {off} {when}: this run is {verdict}.", worst.name);
-        let Some(seconds) = seconds else { return Some(wrong) };
+        // No other run has an error that can be stated, either.
+        let is_known = !accuracy.relative().is_nan();
+        let Some(seconds) = seconds.filter(|_| is_known) else { return Some(wrong) };
         let patience = PATIENCE[0].max(PATIENCE[1] * seconds.min(LONG.as_secs_f64()));
         let until = cpu_seconds() + patience;
         self.deadline.set(Some(until));

@@ -18,7 +18,7 @@ use lieflow_model::problem::{
     LAST_DIGITS, Outcome, Plan, Steps, Watcher, other_tolerance, stop_after_hardest,
 };
 use lieflow_model::scene::Scene;
-use lieflow_model::schema::{Component, Observable, Row};
+use lieflow_model::schema::{Component, Observable, Row, length};
 
 use self::advice::POOR;
 use self::sizes::size;
@@ -28,7 +28,6 @@ use super::apart::{
 };
 use super::shown::{Choice, Shown};
 use super::watch::Watch;
-use crate::measure::norm;
 use crate::output::{Accuracy, Distance, FoundBy, PartError, RowSample, ShownRows, rough};
 
 /// A run that took longer is not made a second time, but where that is asked for.
@@ -510,7 +509,8 @@ impl<'a> Check<'a> {
                 let is_angle = part.measure.is_angle();
                 // No two rotations are farther apart than half a turn.
                 let most = if is_angle { PI } else { f64::INFINITY };
-                let [absolute, relative] = [absolute, relative].map(|x| (x * share).min(most));
+                let [absolute, relative] =
+                    [absolute, relative].map(|x| if x * share > most { most } else { x * share });
                 let degrees = is_angle.then(|| absolute.to_degrees());
                 Distance { absolute, relative, degrees }
             };
@@ -540,8 +540,9 @@ impl<'a> Check<'a> {
         let sizes: Vec<Size> = parts_of(self.watch)
             .zip(&self.run.sizes)
             .map(|((observable, part), size)| {
-                let norms =
-                    rows.iter().map(|row| norm(&schema.row(row)[observable][part.columns.clone()]));
+                let norms = rows
+                    .iter()
+                    .map(|row| length(&schema.row(row)[observable][part.columns.clone()]));
                 let largest = norms.fold(0.0, f64::max);
                 Size { largest: size.largest.min(largest), middle: size.middle.min(largest) }
             })
@@ -575,7 +576,7 @@ impl<'a> Check<'a> {
         let share = with_rounding((found_by, share), &apart, end_moved);
         let accuracy = self.judge((found_by, share), &apart, moved, clock);
         // Two runs may have the same rounding.
-        Some((moved.max(accuracy.relative()) <= POOR).then_some(accuracy))
+        Some((moved <= POOR && accuracy.relative() <= POOR).then_some(accuracy))
     }
 }
 

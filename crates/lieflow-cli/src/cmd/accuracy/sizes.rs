@@ -1,10 +1,10 @@
 //! The sizes of the parts of the state, which errors are relative to.
 
-use lieflow_model::schema::{Component, Observable, Row};
+use lieflow_model::schema::{Component, Observable, Row, length};
 
 use super::{Check, FEW, OWN};
 use crate::cmd::apart::{Size, parts_of};
-use crate::measure::{RETURNS, norm};
+use crate::measure::RETURNS;
 use crate::output::RowSample;
 
 /// At so many times between the rows such a part is looked at.
@@ -14,7 +14,7 @@ const GOLDEN: f64 = 0.618_033_988_749_895;
 
 /// The size of a part in these rows.
 pub(super) fn size((observable, part): (&Observable, &Component), rows: &RowSample<'_>) -> Size {
-    let norm = |row: Row<'_>| norm(&row[observable][part.columns.clone()]);
+    let norm = |row: Row<'_>| length(&row[observable][part.columns.clone()]);
     let mut sizes: Vec<f64> = rows.rows().map(|(_, row)| norm(row)).collect();
     let ends = rows.ends().map_or([0.0; 2], |ends| ends.map(|(_, row)| norm(row)));
     sizes.sort_by(f64::total_cmp);
@@ -38,7 +38,7 @@ impl Check<'_> {
         let schema = self.watch.model.schema();
         let there = parts_of(self.watch).map(|(observable, part)| {
             let norms =
-                rows.iter().map(|row| norm(&schema.row(row)[observable][part.columns.clone()]));
+                rows.iter().map(|row| length(&schema.row(row)[observable][part.columns.clone()]));
             norms.fold(0.0, f64::max)
         });
         let there: Vec<f64> = there.collect();

@@ -20,12 +20,12 @@ use lieflow_figures::{
 use lieflow_model::problem;
 use lieflow_model::problem::{Figure, PrincipalInertia};
 use lieflow_model::scene::Scene;
-use lieflow_model::schema::{Observable, Row};
+use lieflow_model::schema::{self, Observable, Row};
 
 use self::lines::{Column, LINES, Shown, against_time, figure, in_rows, marked};
 use self::swings::Drawn as Figured;
 use crate::error::CliError;
-use crate::output::{EVENTS, SUMMARY, Summary};
+use crate::output::{Drift, EVENTS, SUMMARY, Summary};
 
 /// Rows of a table that is open.
 const MANY: usize = 10;
@@ -433,10 +433,7 @@ fn sphere(id: String, title: String, run: &Drawn<'_>) -> Sphere {
     let triples = quantity.columns.len() / 3;
     let at =
         |k: usize, row: Row<'_>| -> [f64; 3] { core::array::from_fn(|i| row[quantity][3 * k + i]) };
-    let length = |k: usize| {
-        let squares = |row| at(k, row).iter().map(|x| x * x).sum::<f64>();
-        rows.ends().map_or(1.0, |[(_, row), _]| squares(row).sqrt())
-    };
+    let length = |k: usize| rows.ends().map_or(1.0, |[(_, row), _]| schema::length(at(k, row)));
     let paths_of = |rows: &[(f64, Row<'_>)]| -> Vec<Vec<[f64; 3]>> {
         let path = |k: usize| {
             let length = length(k);
@@ -518,6 +515,7 @@ fn drift_table(summary: &Summary) -> Block {
     ];
     let rows = summary.drift.iter().map(|(name, drift)| {
         let promise = match (drift.promised, drift.breaks_a_promise()) {
+            _ if !drift.is_known() => "not known",
             (true, false) => "keeps it to rounding",
             (true, true) => "promises to keep it, and did not",
             (false, _) => "does not keep it exactly",
@@ -574,7 +572,7 @@ fn drifts(summary: &Summary, watched: &[&Observable], rows: &RowSample<'_>) -> O
         caption += &format!(" Without any change: {}.", names.join(", "));
     }
     let chart = Block::Chart(marked(chart.with_caption(caption), summary));
-    Some(match summary.drift.values().all(|drift| drift.max <= drift.rounding) {
+    Some(match summary.drift.values().all(Drift::is_rounding) {
         true => Block::fold("All changes are rounding alone: against time", vec![chart]),
         false => chart,
     })

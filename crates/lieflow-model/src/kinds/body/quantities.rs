@@ -265,7 +265,7 @@ pub(in crate::kinds) const fn angle<S: AsBody>() -> Quantity<S> {
 /// The length of the angular momentum.
 pub(in crate::kinds) const fn momentum_norm<S: AsBody>() -> Quantity<S> {
     Quantity::number("momentum_norm", "length of the angular momentum", |body: &S, _, y| {
-        body.momentum(y).norm()
+        length(&body.momentum(y))
     })
     .of_dimension(Dimension::ANGULAR_MOMENTUM)
 }

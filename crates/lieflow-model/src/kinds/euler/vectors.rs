@@ -123,8 +123,7 @@ where
     /// |H| and |m||∇H|, whose rounding is that of H.
     fn energy_terms(&self, m: &Self::Momentum) -> f64 {
         let m = m.numbers();
-        let norm = |x: [f64; N]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
-        self.energy.value(&m).abs() + norm(m) * norm(self.energy.slope(&m))
+        self.energy.value(&m).abs() + length(m) * length(self.energy.slope(&m))
     }
     fn casimirs(m: &Self::Momentum, row: &mut Vec<f64>) {
         if N == 3 {
