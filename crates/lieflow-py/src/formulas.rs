@@ -1,25 +1,33 @@
 //! f and events as formulas.
 
+use lieflow::RunError;
+use lieflow_model::formula::Lost;
 use lieflow_model::kinds::own;
 use lieflow_model::reader::Tree;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::solve::knots;
-use crate::tree::{mistakes, tree};
+use crate::tree::{from_zero, mistakes, tree};
 
 /// Formulas in t and the numbers of y.
 #[pyclass(frozen, module = "lieflow._lieflow")]
-pub(crate) struct Formulas(pub(crate) own::Formulas);
+pub(crate) struct Formulas(pub(crate) own::Formulas, Py<PyAny>);
 
 #[pymethods]
 impl Formulas {
     #[new]
-    fn new(variables: Vec<String>, counts: Vec<usize>, keys: &Bound<'_, PyDict>) -> PyResult<Self> {
+    /// `place` makes the place of a formula for the user of its key.
+    fn new(
+        variables: Vec<String>,
+        counts: Vec<usize>,
+        keys: &Bound<'_, PyDict>,
+        place: Py<PyAny>,
+    ) -> PyResult<Self> {
         let py = keys.py();
         let keys: Tree = tree("", keys)?;
         let read = own::Formulas::read(&variables, &counts, &keys);
-        read.map(Formulas).map_err(|error| mistakes(py, &error))
+        read.map(|read| Formulas(read, place)).map_err(|error| mistakes(py, &error))
     }
     /// True if a formula has a number of y in it.
     #[getter]
@@ -30,8 +38,14 @@ impl Formulas {
     fn knots(&self, py: Python<'_>, t_span: [f64; 2]) -> PyResult<Vec<f64>> {
         self.0.samples().map_or(Ok(Vec::new()), |samples| knots(py, samples, t_span))
     }
-    /// The formula that had no value first.
-    fn lost(&self) -> Option<String> {
-        self.0.lost()
+}
+
+impl Formulas {
+    /// The formula by which a run ended with this error, in words.
+    pub(crate) fn lost_by(&self, py: Python<'_>, error: &RunError) -> Option<PyResult<String>> {
+        let lost = self.0.lost_by(error)?;
+        let place = self.1.bind(py).call1((from_zero(&lost.key),)).and_then(|key| key.extract());
+        let through = lost.through.as_deref().map(from_zero);
+        Some(place.map(|key| Lost { key, through, ..lost }.to_string()))
     }
 }

@@ -5,7 +5,6 @@ use std::time::Instant;
 
 use lieflow::catalog::{MethodSpec, all_methods};
 use lieflow::{RunError, SaveAt, TimeGrid};
-use lieflow_model::formula::Which;
 use lieflow_model::kinds::{KINDS, named};
 use lieflow_model::problem::{
     self, CurvePlace, EventPlan, Kept, KeyInfo, Layer, Orders, Outcome, Plan, StepByStep, Steps,
@@ -26,7 +25,7 @@ use crate::run::{
 };
 use crate::solve::knots;
 use crate::stepper::Stepper;
-use crate::tree::{mistake, mistakes, tree};
+use crate::tree::{in_words, mistake, mistakes, tree};
 
 /// What a value of this shape is, in words.
 fn shape_words(shape: Shape) -> String {
@@ -242,7 +241,7 @@ impl Model {
     /// The row at the start of a run from t0, if it has one: it has the signs that the keys say.
     fn start_row(&self, method: &MethodSpec, t0: f64) -> Option<Vec<f64>> {
         let grid = TimeGrid::new([t0, t0 + 1.0], 1.0).ok()?;
-        let run = self.model.stepper(method, Steps::Equal(grid)).ok()?;
+        let run = self.model.stepper(method, None, Steps::Equal(grid)).ok()?;
         let mut row = Vec::with_capacity(self.width());
         run.row(&mut row);
         Some(row)
@@ -378,9 +377,9 @@ impl Model {
         };
         let (done, curve) = if attached { run() } else { py.detach(run) };
         let status = done.map(|outcome| outcome.status);
+        let lost = status.as_ref().err().and_then(|error| self.problem.formula()?.lost_by(error));
         let result = watch.seen.into_dict(py, &raised, status, (&shape, LONGEST), Some(&steps))?;
-        let lost = self.problem.formula().and_then(|formula| formula.lost(Which::First));
-        result.set_item("lost", lost.map(|lost| lost.to_string()))?;
+        result.set_item("lost", lost.map(in_words))?;
         result.set_item("curve", curve.map(|curve| Py::new(py, curve)).transpose()?)?;
         Ok(result)
     }
@@ -459,8 +458,8 @@ impl Model {
         let numbers = || self.numbers(&spec, start);
         let steps = settings.steps(py, t_span, (orders, numbers), "Integrator")?;
         let (stops, max_steps) = (settings.stops(), settings.max_steps);
-        let run = StepByStep { steps, stops, start, max_steps };
-        let run = self.model.stepper(&spec, run);
+        let run = StepByStep { steps, stops, max_steps };
+        let run = self.model.stepper(&spec, start, run);
         Stepper::new(py, run, &[self.width()], (Arc::default(), false))
     }
 }

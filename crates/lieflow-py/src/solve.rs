@@ -114,7 +114,7 @@ impl Space {
         let raised = Arc::new(Raised::default());
         let ready = Ready::new(py, self, field, method, (t_span, &y0, &settings), &raised)?;
         let (stops, max_steps) = (settings.stops(), settings.max_steps);
-        let run = StepByStep { steps: ready.steps, stops, start: None, max_steps };
+        let run = StepByStep { steps: ready.steps, stops, max_steps };
         let run = ready.problem.stepper(&ready.spec, &y0, run);
         if let Some(error) = raised.take() {
             return Err(error);
@@ -280,13 +280,21 @@ pub(crate) fn solve<'py>(
     callback: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let (raised, shape) = (Arc::new(Raised::default()), space.space.point());
+    let formulas = match &field {
+        FieldParts::Formulas(formulas) => Some(formulas.clone_ref(py)),
+        _ => None,
+    };
     let ready = Ready::new(py, space, field, method, (t_span, &y0, &settings), &raised)?;
+    formulas.iter().for_each(|formulas| formulas.get().0.forget());
     let mut watch = Watch::new(py, (events, callback), &args, (shape, shape), raised.clone());
     let save = save_of(t_eval)?;
     let attached = ready.attached || watch.has_callables();
     let mut run = || drive(&ready, &y0, (&settings, save.clone()), &mut watch);
     let (status, curve) = if attached { run() } else { py.detach(run) };
+    let lost = status.as_ref().err().zip(formulas.as_ref());
+    let lost = lost.and_then(|(error, formulas)| formulas.get().lost_by(py, error));
     let result = watch.seen.into_dict(py, &raised, status, (shape, LONGEST), Some(&ready.steps))?;
+    result.set_item("lost", lost.transpose()?)?;
     let curve = curve.map(|curve| Py::new(py, Curve::new(curve, shape))).transpose()?;
     result.set_item("curve", curve)?;
     Ok(result)

@@ -1,5 +1,6 @@
 //! Values of Python as values of the keys of a problem.
 
+use lieflow_model::formula::Lost;
 use lieflow_model::reader::{KeyPath, Mistakes, Refusal, Tree};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -62,18 +63,29 @@ pub(crate) fn untree<'py>(py: Python<'py>, x: &Tree) -> PyResult<Bound<'py, PyAn
     })
 }
 
-/// The path of a key, counted from 0.
-fn from_zero(path: &str) -> String {
-    let mut parts = path.split('[');
+/// A text with its places of entries, such as `a[1,2]`, counted from 0. A list of numbers, which stands behind no name, is
+/// left as it is.
+pub(crate) fn from_zero(text: &str) -> String {
+    let mut parts = text.split('[');
     let first = parts.next().unwrap_or_default().to_owned();
     parts.fold(first, |all, part| {
-        let (index, rest) = part.split_once(']').unwrap_or((part, ""));
-        let less = index.split(',').map(|i| match i.trim().parse::<usize>() {
-            Ok(i) => i.saturating_sub(1).to_string(),
-            Err(_) => i.to_owned(),
+        let is_place = all.ends_with(|c: char| c.is_alphanumeric() || matches!(c, '_' | ']'));
+        let less = part.split_once(']').filter(|_| is_place).and_then(|(index, rest)| {
+            let less = index.split(',').map(|i| i.trim().parse::<usize>().ok()?.checked_sub(1));
+            let less: Option<Vec<usize>> = less.collect();
+            Some((less?.iter().map(usize::to_string).collect::<Vec<_>>().join(", "), rest))
         });
-        format!("{all}[{}]{rest}", less.collect::<Vec<_>>().join(", "))
+        match less {
+            Some((index, rest)) => format!("{all}[{index}]{rest}"),
+            None => format!("{all}[{part}"),
+        }
     })
+}
+
+/// A formula without a value, with its keys counted from 0.
+pub(crate) fn in_words(lost: Lost) -> String {
+    let through = lost.through.as_deref().map(from_zero);
+    Lost { key: from_zero(&lost.key), through, ..lost }.to_string()
 }
 
 /// A mistake as (argument, what is wrong, advice).
@@ -90,7 +102,7 @@ fn parts(Refusal { key, message, help }: &Refusal) -> Parts {
 
 /// The words about the tables of a scene file as words about arguments.
 fn of_values(text: &str) -> String {
-    let text = text.replace("a line `", "an entry `");
+    let text = from_zero(text).replace("a line `", "an entry `");
     text.replace("[problem.parameters]", "`parameters`").replace("[problem.let]", "`let`")
 }
 

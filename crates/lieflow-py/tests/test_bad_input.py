@@ -378,3 +378,53 @@ def test_names_and_lists_of_numbers_are_read_before_they_are_used():
         lf.Samples([0, 1], [1, 2], names=[3])
     with pytest.raises(lf.ArgumentError, match=r"stops: shape \(1, 2\), expected a list of numbers"):
         lf.solve_ivp(body, (0, 1), stops=[[0.2, 0.5]])
+
+
+def test_places_count_from_zero():
+    told = {
+        "a[1, 0]: expected a symmetric matrix, but a[0, 1] is 2 and a[1, 0] is 3": lambda: lf.Hill(
+            a=[[1, 2], [3, 4]], q=[[1, 0], [0, 1]], period=1
+        ),
+        "field[1, 2]: ": lambda: lf.MatrixOde(group="so", field=[[0, 1, 2], [-1, 0, 3], [-2, 3, 0]]),
+        "field[1, 2] is 3 and field[2, 1] is 3, expected field[2, 1] = -field[1, 2]": lambda: lf.MatrixOde(
+            group="so", field=[[0, 1, 2], [-1, 0, 3], [-2, 3, 0]]
+        ),
+        "|s[1]| = 0": lambda: lf.SpinChain(spins=[[1, 0, 0], [0, 0, 0]]),
+    }
+    for words, make in told.items():
+        with pytest.raises(lf.ArgumentError) as caught:
+            lf.solve_ivp(make(), (0, 1))
+        assert words in str(caught.value), str(caught.value)
+
+
+def test_a_value_that_is_lost_within_a_run_is_told():
+    def turn(t, y):
+        return [np.nan if t > 0.5 else 1.0, 0.0, 0.0]
+
+    run = lf.solve_ivp(turn, (0, 1), np.eye(3), group="SO(3)", frame="body")
+    assert not run.success and "the right-hand side f is not finite" in run.message, run.message
+    field = lf.Field("SO(3)", ["ln(0.5-t)", "0", "0"])
+    message = lf.solve_ivp(field, (0, 1), np.eye(3), frame="body").message
+    assert "field[0] = ln(0.5-t) is" in message, message
+    # Another run of the same field, which ends for another reason, has nothing of the first one.
+    message = lf.solve_ivp(field, (0, 0.4), np.eye(3), frame="body", max_steps=1).message
+    assert "ln(" not in message, message
+    parts = lf.Field(lf.Parts(attitude="rotation", w="numbers 2"), {"attitude": ["0", "sqrt(a)", "0"], "w": ["1", "0"]}, let={"a": "0.5 - t"})
+    start = {"attitude": np.eye(3), "w": [0, 0]}
+    message = lf.solve_ivp(parts, (0, 1), start, dt=0.1, frame="body").message
+    assert "field['attitude'][1] = sqrt(a) is NaN" in message, message
+
+
+def test_what_stands_for_a_name_or_a_quaternion():
+    with pytest.raises(TypeError, match="y: a value of type float, expected a name"):
+        lf.Field("SO(3)", ["1", "0", "0"], y=1.0)
+    from scipy.spatial.transform import Rotation
+
+    turn = Rotation.from_rotvec([0.1, -0.2, 0.3])
+    keys = {"inertia": [1, 2, 3], "omega_body": [0.1, 0.2, 0.3]}
+    x, y, z, w = turn.as_quat()
+    body = lf.RigidBody(**keys, quaternion=turn)
+    assert body == lf.RigidBody(**keys, quaternion=[w, x, y, z])
+    by_matrix = lf.RigidBody(**keys, attitude=turn)
+    ends = [lf.solve_ivp(p, (0, 1), quantities="attitude").y.attitude[-1] for p in (body, by_matrix)]
+    assert np.allclose(*ends, atol=1e-6)

@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use lieflow::samples::Samples;
 use lieflow::scalar::Real;
+use lieflow::{Failure, RunError};
 
-use super::lost::{Lost, Origin, Which};
+use super::lost::{Lost, NEAR, Origin, Which, is_of_values};
 use super::names::Names;
 use super::samples::Table;
 use super::tape::{LENGTH_MAX, Tape};
@@ -87,6 +88,23 @@ impl Formula {
     /// Which of this formula and those of the same names had no finite value, and where.
     pub fn lost(&self, which: Which) -> Option<Lost> {
         self.origin.names.losses().tell(which)
+    }
+
+    /// The formula of the same names by which a run ended with this error.
+    pub fn lost_by(&self, error: &RunError) -> Option<Lost> {
+        match error {
+            RunError::Step(Failure { source, .. }) if is_of_values(source) => {
+                self.lost(Which::First)
+            }
+            RunError::StepSizeUnderflow { source: Some(source), .. } if is_of_values(source) => {
+                self.lost(Which::Last)
+            }
+            // The last step was so small that t did not reach beyond what it failed by before.
+            RunError::StepSizeUnderflow { t, .. } => self
+                .lost(Which::Last)
+                .filter(|lost| lost.t().is_some_and(|at| (at - t).abs() <= NEAR * (1.0 + t.abs()))),
+            _ => None,
+        }
     }
 
     /// Its derivative by a variable, as a formula.

@@ -5,6 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use super::names::{Entry, Names, continues_name};
 use super::tape::Tape;
+use lieflow::StepError;
 use lieflow::error::Plain;
 
 /// Where a formula stands, and what its names mean.
@@ -136,6 +137,14 @@ fn needed<'a>(text: &str, names: &'a Names) -> Vec<&'a str> {
         }
     }
     needed.into_iter().map(|entry| &*entry.key).collect()
+}
+
+/// The distance of the time where a formula has no value from that where steps become too small.
+pub(crate) const NEAR: f64 = 1e-6;
+
+/// Is the reason a value that is not finite?
+pub(super) fn is_of_values(error: &StepError) -> bool {
+    matches!(error, StepError::NonFiniteRhs { .. } | StepError::NotFinite { .. })
 }
 
 /// Variables that are shown.

@@ -37,6 +37,7 @@ mod value;
 
 pub use expression::{Formula, without_value};
 pub use lets::Lets;
+pub(crate) use lost::NEAR;
 pub use lost::{Lost, Which};
 pub use names::Names;
 pub(crate) use numbers::{Constants, Instead, of_keys};

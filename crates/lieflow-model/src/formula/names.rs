@@ -94,7 +94,7 @@ impl Names {
         Ok(names)
     }
 
-    /// Those of formulas that do not change with time, as these names do.
+    /// The names of formulas that may not change with time. The names of `varying` do.
     pub(super) fn of_numbers(varying: Arc<BTreeSet<String>>) -> Names {
         Names { varying: Some(varying), ..Names::default() }
     }
@@ -270,7 +270,7 @@ impl Names {
         Err(Refusal::at(key, format!("`{name}` {why}")))
     }
 
-    /// As [`check`](Self::check), and the name must not be that of a vector or a matrix either.
+    /// Checks a name as [`check`](Self::check) does. It must not be the name of a vector or a matrix either.
     pub(super) fn check_new(&self, key: &str, name: &str) -> Result<(), Refusal> {
         self.check(key, name)?;
         let has_entries = |ends: [&str; 2]| {

@@ -24,8 +24,8 @@ pub(crate) struct Constants {
 pub(crate) type Instead = &'static [(&'static str, &'static str)];
 
 impl Constants {
-    /// Those of a section, whose named formulas and `varying` names may change with time. The mistakes in its parameters
-    /// are left to who reads them.
+    /// The constants of a section. Its named formulas and the `varying` names may change with time. The mistakes in its
+    /// parameters are left to who reads them.
     pub(crate) fn of(section: Option<&Value>, varying: impl IntoIterator<Item = String>) -> Self {
         let within = |key: &str| section.and_then(|section| section.get(key));
         let lets = within("let").and_then(|lets| lets.as_table());

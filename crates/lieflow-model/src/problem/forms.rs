@@ -52,7 +52,8 @@ pub(crate) trait Run: Debug + Send + Sync {
         &self,
         asked: Asked<'_>,
         method: &MethodSpec,
-        steps: StepByStep<'_>,
+        start: Option<&[f64]>,
+        steps: StepByStep,
     ) -> Result<Box<dyn Stepper>, RunError>;
     /// See [`Model::curve`](super::Model::curve).
     fn curve(

@@ -371,23 +371,25 @@ impl Model {
         }
     }
 
-    /// A run that the caller takes step by step.
+    /// A run that the caller takes step by step, from the state of the problem or from another one of these numbers (as
+    /// [`Outcome::state`] has them).
     ///
     /// # Errors
     /// As [`Solve::integrator`](lieflow::Solve::integrator).
-    pub fn stepper<'s>(
+    pub fn stepper(
         &self,
         method: &MethodSpec,
-        steps: impl Into<StepByStep<'s>>,
+        start: Option<&[f64]>,
+        steps: impl Into<StepByStep>,
     ) -> Result<Box<dyn Stepper>, RunError> {
         let steps = steps.into();
         match &self.source {
             Source::Form { quantities, .. } => {
                 let asked = Asked { quantities, schema: &self.schema };
-                self.form(method).stepper(asked, method, steps)
+                self.form(method).stepper(asked, method, start, steps)
             }
             Source::Model { base, number } => {
-                let (run, map) = (base.stepper(method, steps)?, self.map_of(base, number));
+                let (run, map) = (base.stepper(method, start, steps)?, self.map_of(base, number));
                 Ok(Box::new(MappedStepper { run, map }))
             }
         }

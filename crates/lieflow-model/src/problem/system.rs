@@ -297,12 +297,13 @@ impl<S: System> Run for On<S> {
         &self,
         asked: Asked<'_>,
         method: &MethodSpec,
-        steps: StepByStep<'_>,
+        start: Option<&[f64]>,
+        steps: StepByStep,
     ) -> Result<Box<dyn Stepper>, RunError> {
         let problem = &self.ready()?.0;
         let points = self.points(asked.quantities, steps.steps.t_span()[0]);
-        let y = self.start_at(steps.start)?;
-        S::Problem::stepper(method, problem, y, StepByStep { start: None, ..steps }, points)
+        let y = self.start_at(start)?;
+        S::Problem::stepper(method, problem, y, steps, points)
     }
     fn curve(
         &self,

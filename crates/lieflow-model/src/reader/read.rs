@@ -203,7 +203,7 @@ impl From<Error> for ReadError {
 }
 
 impl ReadError {
-    /// What follows from mistakes that are known.
+    /// An error that reports nothing: its cause is reported already.
     pub(crate) fn known() -> Self {
         ReadError::default()
     }

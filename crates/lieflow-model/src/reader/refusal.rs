@@ -55,7 +55,7 @@ impl Refusal {
     pub fn in_table(table: &str, error: Error) -> Self {
         match error {
             Error::OutOfRange { arg, value, expected } => {
-                Refusal::out_of_range(&table.entry(&path_of(&arg)), value, &expected)
+                Refusal::out_of_range(&table.entry(&path_of(&arg)), value, &path_of(&expected))
             }
             other => Refusal::from(other).about(table),
         }
@@ -94,7 +94,7 @@ pub(crate) fn amount(n: usize, things: &str) -> String {
     format!("{n} {}", if n == 1 { things.trim_end_matches('s') } else { things })
 }
 
-/// An argument of the library, whose lists count from 0, as a path.
+/// A text of the library, whose lists count from 0, with paths of scenes.
 fn path_of(arg: &str) -> String {
     let mut parts = arg.split('[');
     let key = parts.next().unwrap_or_default().to_owned();
@@ -111,7 +111,7 @@ impl From<Error> for Refusal {
     fn from(error: Error) -> Self {
         let error = match error {
             Error::OutOfRange { arg, value, expected } => {
-                Error::OutOfRange { arg: path_of(&arg), value, expected }
+                Error::OutOfRange { arg: path_of(&arg), value, expected: path_of(&expected) }
             }
             Error::Length { arg, found, expected } => {
                 Error::Length { arg: path_of(&arg), found, expected }
@@ -146,7 +146,7 @@ impl From<Error> for Refusal {
     }
 }
 
-/// One of two keys.
+/// One of two values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Either<A, B> {
     /// The first.

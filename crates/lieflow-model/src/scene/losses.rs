@@ -1,10 +1,10 @@
 //! Which formula ended a run: one that had no value, or one with a pole.
 
-use lieflow::{Failure, RunError, StepError};
+use lieflow::RunError;
 
 use super::events::SceneEvent;
 use super::run::Scene;
-use crate::formula::{Formula, Lost, Which};
+use crate::formula::{Formula, Lost, NEAR, Which};
 
 impl Scene {
     /// Forgets which formulas had no value: what [`lost`](Self::lost) tells is of the run after this.
@@ -26,25 +26,11 @@ impl Scene {
 
     /// The formula by which a run ended with this error.
     pub fn lost(&self, error: &RunError) -> Option<Lost> {
-        let which = match error {
-            RunError::Event { name, .. } => {
-                let event = self.events.iter().find(|event| event.name == *name)?;
-                return event.formula().lost(Which::Last);
-            }
-            RunError::Step(Failure { source, .. }) if is_of_values(source) => Which::First,
-            RunError::StepSizeUnderflow { source: Some(source), .. } if is_of_values(source) => {
-                Which::Last
-            }
-            // The last step was so small that t did not reach beyond what it failed by before.
-            RunError::StepSizeUnderflow { t, .. } => {
-                let lost = self.problem.formula()?.lost(Which::Last);
-                return lost.filter(|lost| {
-                    lost.t().is_some_and(|at| (at - t).abs() <= NEAR * (1.0 + t.abs()))
-                });
-            }
-            _ => return None,
-        };
-        self.problem.formula()?.lost(which)
+        if let RunError::Event { name, .. } = error {
+            let event = self.events.iter().find(|event| event.name == *name)?;
+            return event.formula().lost(Which::Last);
+        }
+        self.problem.formula()?.lost_by(error)
     }
 
     /// The formula with a pole at which the steps became too small, in words: one that has no finite value at a time of
@@ -65,10 +51,3 @@ impl Scene {
 
 /// The decimal digits of a time at which a pole is looked for.
 const POLE_DIGITS: i32 = 6;
-/// The distance of the time where a formula has no value from that where steps become too small.
-const NEAR: f64 = 1e-6;
-
-/// Is the reason a value that is not finite?
-fn is_of_values(error: &StepError) -> bool {
-    matches!(error, StepError::NonFiniteRhs { .. } | StepError::NotFinite { .. })
-}

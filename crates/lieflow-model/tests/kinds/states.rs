@@ -3,7 +3,7 @@
 
 use lieflow::catalog::MethodSpec;
 use lieflow::{SaveAt, TimeGrid};
-use lieflow_model::problem::{EventPlan, Model, Plan, Rows, StepByStep, Steps};
+use lieflow_model::problem::{EventPlan, Model, Plan, Rows, Steps};
 use lieflow_model::reader::Tree;
 
 use super::*;
@@ -18,9 +18,8 @@ fn steps(t0: f64, t: f64) -> Steps {
 /// What a start of these numbers, an event that sets them and the caller of a run who sets them end with, and in words.
 fn answers(model: &Model, method: &MethodSpec, t: [f64; 2], x: &[f64]) -> [Result<(), String>; 3] {
     let [t0, length] = t;
-    let start = StepByStep { start: Some(x), ..steps(t0, length).into() };
-    let started = model.stepper(method, start);
-    let mut run = model.stepper(method, steps(t0, length)).unwrap();
+    let started = model.stepper(method, Some(x), steps(t0, length));
+    let mut run = model.stepper(method, None, steps(t0, length)).unwrap();
     let set = run.set_state(x);
     let change = EventPlan {
         change: Some(Box::new(|_, numbers: &mut [f64]| numbers.copy_from_slice(x))),

@@ -31,7 +31,7 @@ fn a_stepper_has_the_rows_of_a_run() {
         let mut keep = |_: f64, row: Row<'_>| rows = row.values().to_vec();
         model.drive(&method, Plan::new(steps(1.0), SaveAt::End), &mut Rows(&mut keep)).unwrap();
 
-        let mut run = model.stepper(&method, steps(1.0)).unwrap();
+        let mut run = model.stepper(&method, None, steps(1.0)).unwrap();
         run.advance_to(0.5).unwrap();
         let (saved, state) = (run.save(), run.state());
         let mut values = Vec::new();
@@ -40,7 +40,7 @@ fn a_stepper_has_the_rows_of_a_run() {
         assert_eq!(values, rows, "{name}");
         assert_eq!(run.stats().accepted, 20, "{name}");
 
-        let mut other = model.stepper(&method, steps(1.0)).unwrap();
+        let mut other = model.stepper(&method, None, steps(1.0)).unwrap();
         other.restore(&saved).unwrap();
         assert_eq!((other.t(), other.state()), (0.5, state.clone()), "{name}");
         other.advance_to(1.0).unwrap();
@@ -49,12 +49,12 @@ fn a_stepper_has_the_rows_of_a_run() {
         assert_eq!(values, rows, "{name}");
 
         let stops = StepByStep { stops: vec![0.123].into(), ..steps(1.0).into() };
-        let mut stopped = model.stepper(&method, stops).unwrap();
+        let mut stopped = model.stepper(&method, None, stops).unwrap();
         let ends: Vec<f64> = (0..4).map(|_| stopped.step().unwrap()).collect();
         assert!(ends.contains(&0.123), "{name}: {ends:?}");
 
-        let short = StepByStep { start: Some(&state[1..]), ..steps(1.0).into() };
-        assert!(model.stepper(&method, short).is_err(), "{name}");
+        let short = model.stepper(&method, Some(&state[1..]), steps(1.0));
+        assert!(short.is_err(), "{name}");
         assert!(run.set_state(&vec![f64::NAN; state.len()]).is_err(), "{name}");
     }
 }
@@ -115,7 +115,7 @@ fn formulas_on_parts_are_a_composed_system() {
     let end = end_of(&own, "rkmk dop853 exp", &[0.0, 0.0, -1.0, 1.9, 0.0]);
 
     let (model, _) = model_of("spin-and-oscillator");
-    let mut run = model.stepper(&method, steps(1.0)).unwrap();
+    let mut run = model.stepper(&method, None, steps(1.0)).unwrap();
     run.advance_to(1.0).unwrap();
     let mut rows = Vec::new();
     run.row(&mut rows);

@@ -6,16 +6,14 @@ import warnings
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from . import _lieflow
-from ._arrays import MEMBERSHIP, finite, first, name_of, number, own, real, whole
+from ._arrays import MEMBERSHIP, Array, finite, first, name_of, number, own, real, whole
 from .so3 import contains
 from ._errors import ArgumentError
 
 __all__ = ["FreeBodies"]
-
-Array = NDArray[np.float64]
 
 
 class FreeBodies:

@@ -5,19 +5,18 @@ from __future__ import annotations
 import copy
 import sys
 from collections.abc import Mapping, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _lieflow
-from ._arrays import finite, kept, name_of, own, real
+from ._arrays import Array, finite, kept, name_of, own, real
 from ._errors import ArgumentError, together
 from ._groups import Group
 
 __all__ = ["CFunction", "Field", "Parts", "Quantities", "Samples"]
-
-Array = NDArray[np.float64]
 
 
 class Quantities(dict[str, NDArray[Any]]):
@@ -360,6 +359,7 @@ class Field:
     ) -> None:
         if not isinstance(group, (str, Group, Parts)):
             raise TypeError(f"group: a value of type {type(group).__name__}, expected a name, a Group or Parts")
+        name_of("y", y)
         if samples is not None and not isinstance(samples, Samples):
             raise TypeError(f"samples: a value of type {type(samples).__name__}, expected lieflow.Samples")
         for name, x in parameters.items():
@@ -411,13 +411,13 @@ class Field:
         if self.samples is not None:
             keys["samples"] = list(self.samples.as_file())
             keys["interpolation"] = self.samples.interpolation
+        place = partial(_of_part, names=names, row=row)  # the first index is that of the part
         try:
-            return _lieflow.Formulas(columns, counts, keys)
+            return _lieflow.Formulas(columns, counts, keys, place)
         except ArgumentError as error:
-            # The first index is that of the part.
             wrong = [error, *error.others]
             for one in wrong:
-                one.argument = _of_part(one.argument, names, row)
+                one.argument = place(one.argument)
             raise together(wrong) from None
 
     def __repr__(self) -> str:

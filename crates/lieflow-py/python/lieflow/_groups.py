@@ -9,12 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _lieflow
-from ._arrays import MEMBERSHIP, elements, first, into, leading, own, real, what, whole
+from ._arrays import MEMBERSHIP, Array, elements, first, into, leading, own, real, what, whole
 from ._errors import ArgumentError
 
 __all__ = ["GL", "Gm", "Group", "SL", "SO", "Sp", "expm"]
-
-Array = NDArray[np.float64]
 
 
 class Group:
@@ -174,7 +172,10 @@ def Sp(n: int) -> Group:
 
 
 def Gm(M: ArrayLike) -> Group:
-    """Return G_M = {g : gᵀMg = M} for an invertible real M."""
+    """Return G_M = {g : gᵀMg = M} for an invertible real M.
+
+    A symmetric or skew part of M that is 1e-10 of M or less is taken as rounding and left out.
+    """
     form = real("M", M)
     if form.ndim != 2 or form.shape[0] != form.shape[1] or form.size == 0:
         raise ArgumentError("M", f"shape {form.shape}", "a square matrix")

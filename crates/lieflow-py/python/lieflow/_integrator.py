@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from ._arrays import name_of, number, real
+from ._arrays import Array, name_of, number, real
 from ._errors import ArgumentError
 from ._fields import Parts
 from ._ivp import METHOD, Ready, check_of_problem, check_stops, settings_of, span_of
@@ -17,8 +17,6 @@ from ._problems import Problem
 from ._unitary import ComplexPoints
 
 __all__ = ["Integrator"]
-
-Array = NDArray[np.float64]
 
 
 class Integrator:

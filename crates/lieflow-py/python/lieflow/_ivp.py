@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _lieflow
-from ._arrays import MEMBERSHIP, finite, kept, name_of, number, real, value, what, whole
+from ._arrays import MEMBERSHIP, Array, finite, kept, name_of, number, real, value, what, whole
 from ._errors import ArgumentError
 from ._fields import CFunction, Field, Parts, Quantities, Samples, State, address
 from ._groups import Group
@@ -23,7 +23,6 @@ from ._unitary import ComplexPoints, ComplexState, Unitary, is_su2, is_unitary_n
 
 __all__ = ["Event", "solve_ivp"]
 
-Array = NDArray[np.float64]
 
 #: The method if none is given.
 METHOD = "rkmk dop853 exp"
@@ -499,10 +498,9 @@ def _of_field(
         found["y"] = ready.layout.split(found["y"])
         found["y_events"] = [ready.layout.split(y) for y in found["y_events"]]
         found["y_end"] = ready.layout.split(found["y_end"])
-    if isinstance(fun, Field) and found["status"] < 0:
-        lost = ready.field.lost()
-        if lost is not None:
-            found["message"] += f": {lost}"
+    lost = found.pop("lost")
+    if lost is not None:
+        found["message"] += f": {lost}"
     made_by = (ready.space_args, method, ready.linear, ready.flat)
     sol = None if curve is None else OdeSolution(curve, made_by, ready.layout)
 

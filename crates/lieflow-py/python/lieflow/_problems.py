@@ -10,17 +10,16 @@ from collections.abc import Iterable, Sequence
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from . import _lieflow
-from ._arrays import finite, kept, name_of, number, own, real
+from ._arrays import Array, finite, kept, name_of, number, own, real
 from ._errors import ArgumentError
 from ._fields import Quantities, Samples, State
 from ._result import Layout
 from ._unitary import ComplexState, complex_numbers
 from ._values import alike, is_complex, part, plain
 
-Array = NDArray[np.float64]
 #: Numbers may be formulas of the parameters, as in ``["5*deg", 0, "w"]``.
 Numbers = ArrayLike | Sequence[Any]
 

@@ -12,14 +12,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _lieflow, so3
-from ._arrays import MEMBERSHIP, first
+from ._arrays import MEMBERSHIP, Array, first
 from ._errors import ArgumentError, RunError
 from ._fields import Parts, Quantities, numbered
 from ._unitary import ComplexPoints
 
 __all__ = ["ErrorEstimate", "Layout", "OdeSolution", "Result", "warn_of_events"]
-
-Array = NDArray[np.float64]
 
 
 def warn_of_events(found: dict[str, Any], stacklevel: int) -> None:

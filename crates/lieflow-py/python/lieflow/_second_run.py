@@ -6,15 +6,14 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from . import _lieflow
+from ._arrays import Array
 from ._errors import ArgumentError, RunError
 from ._result import Result
 
 __all__ = ["Repeated", "beyond", "changed", "finer", "second"]
 
-Array = NDArray[np.float64]
 #: What a run is compared with, its result, and the first run again from a changed start.
 Repeated = tuple[str, Result, Result | None]
 

@@ -54,6 +54,8 @@ def plain(name: str, x: Any) -> Any:
     if isinstance(x, (list, tuple)):
         return [plain(f"{name}[{i}]", entry) for i, entry in enumerate(x)]
     if hasattr(x, "as_matrix"):  # SciPy's Rotation
+        if name == "quaternion":
+            return np.roll(x.as_quat(), 1, axis=-1).tolist()  # its last number is the real part
         return x.as_matrix().tolist()
     if hasattr(x, "__array__"):
         return plain(name, np.asarray(x))

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import so3
-from ._arrays import MEMBERSHIP, elements, first, into, leading, series, whole
+from ._arrays import MEMBERSHIP, Array, elements, first, into, leading, series, whole
 from ._errors import ArgumentError
 from ._lieflow import (
     se3_cay as cay,
@@ -36,8 +36,6 @@ __all__ = [
     "Ad", "ad", "as_transform", "cay", "ccsk", "coad", "contains", "dcayinv", "dexp", "dexpinv", "exp", "from_transform", "hat", "log",
     "project", "random", "vee",
 ]
-
-Array = NDArray[np.float64]
 
 
 def _motions(name: str, g: ArrayLike) -> Array:
@@ -93,9 +91,9 @@ def Ad(g: ArrayLike, u: ArrayLike, out: Array | None = None) -> Array:
 def ad(u: ArrayLike, v: ArrayLike, out: Array | None = None) -> Array:
     """Return ad_(ω, v) (ω′, v′) = (ω × ω′, ω × v′ + v × ω′), shape (..., 6)."""
     a, b = elements("u", u, (6,)), elements("v", v, (6,))
-    first = np.cross(a[..., :3], b[..., :3])
-    second = np.cross(a[..., :3], b[..., 3:]) + np.cross(a[..., 3:], b[..., :3])
-    return into(np.concatenate([first, second], axis=-1), out)
+    rotation = np.cross(a[..., :3], b[..., :3])
+    translation = np.cross(a[..., :3], b[..., 3:]) + np.cross(a[..., 3:], b[..., :3])
+    return into(np.concatenate([rotation, translation], axis=-1), out)
 
 
 def coad(u: ArrayLike, m: ArrayLike, out: Array | None = None) -> Array:
@@ -104,8 +102,8 @@ def coad(u: ArrayLike, m: ArrayLike, out: Array | None = None) -> Array:
     A run with ``action="coadjoint"`` solves ẏ = −ad*_f y; a body in a fluid has f = −(ω, v).
     """
     a, b = elements("u", u, (6,)), elements("m", m, (6,))
-    first = np.cross(b[..., :3], a[..., :3]) + np.cross(b[..., 3:], a[..., 3:])
-    return into(np.concatenate([first, np.cross(b[..., 3:], a[..., :3])], axis=-1), out)
+    mu = np.cross(b[..., :3], a[..., :3]) + np.cross(b[..., 3:], a[..., 3:])
+    return into(np.concatenate([mu, np.cross(b[..., 3:], a[..., :3])], axis=-1), out)
 
 
 def contains(g: ArrayLike, tol: float = 1e-12) -> NDArray[np.bool_]:

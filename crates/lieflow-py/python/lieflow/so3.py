@@ -24,7 +24,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._arrays import MEMBERSHIP, elements, first, into, leading, series, whole
+from ._arrays import MEMBERSHIP, Array, elements, first, into, leading, series, whole
 from ._errors import ArgumentError
 from ._lieflow import (
     so3_cay as cay,
@@ -62,8 +62,6 @@ __all__ = [
     "random",
     "vee",
 ]
-
-Array = NDArray[np.float64]
 
 
 def _rotations(name: str, r: ArrayLike) -> Array:

@@ -60,28 +60,25 @@ pub trait Stepper: Send {
     fn restore(&mut self, bytes: &[u8]) -> Result<(), Error>;
 }
 
-/// What makes a point of numbers.
+/// The numbers of a point.
 pub type NumbersOf<Y> = Box<dyn Fn(&Y) -> Vec<f64> + Send + Sync>;
 /// Sets a point by its numbers.
 pub type PointFrom<Y> = Box<dyn Fn(&[f64], &mut Y) -> Result<(), Error> + Send + Sync>;
 
-/// A run that is taken step by step: its steps, the times at which a step ends, and the numbers of its start, if it is not
-/// the state of the problem.
+/// A run that is taken step by step: its steps, and the times at which a step ends.
 #[derive(Clone, Debug)]
-pub struct StepByStep<'a> {
+pub struct StepByStep {
     /// The steps.
     pub steps: Steps,
     /// Times at which a step ends.
     pub stops: Stops,
-    /// The numbers of another point to start from (as [`Outcome::state`](super::Outcome::state) has them).
-    pub start: Option<&'a [f64]>,
     /// The limit of the attempts of a call, where it is not that of the library.
     pub max_steps: Option<u64>,
 }
 
-impl From<Steps> for StepByStep<'_> {
+impl From<Steps> for StepByStep {
     fn from(steps: Steps) -> Self {
-        StepByStep { steps, stops: Stops::default(), start: None, max_steps: None }
+        StepByStep { steps, stops: Stops::default(), max_steps: None }
     }
 }
 
@@ -137,8 +134,8 @@ struct Typed<P: Runnable> {
 pub(super) fn stepper_by<P: Runnable>(
     spec: &MethodSpec,
     problem: &Arc<P>,
-    mut y: PointOf<P>,
-    StepByStep { steps, stops, start, max_steps }: StepByStep<'_>,
+    y: PointOf<P>,
+    StepByStep { steps, stops, max_steps }: StepByStep,
     points: Points<P>,
 ) -> Result<Box<dyn Stepper>, RunError>
 where
@@ -146,9 +143,6 @@ where
     PointOf<P>: Send,
 {
     let method = Arc::new(problem.method(spec)?);
-    if let Some(numbers) = start {
-        (points.point)(numbers, &mut y)?;
-    }
     let solve = Solve::shared(problem.clone(), method, steps.t_span()).stops(stops);
     let solve = match steps {
         Steps::Equal(grid) => solve.grid(grid),

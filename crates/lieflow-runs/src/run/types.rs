@@ -42,7 +42,7 @@ macro_rules! runnable {
                 spec: &MethodSpec,
                 problem: &Arc<Self>,
                 y: PointOf<Self>,
-                steps: StepByStep<'_>,
+                steps: StepByStep,
                 points: Points<Self>,
             ) -> Result<Box<dyn Stepper>, RunError> {
                 stepper_by(spec, problem, y, steps, points)

@@ -2,10 +2,11 @@
 
 use std::sync::Arc;
 
+use lieflow::RunError;
 use lieflow::samples::Samples;
 
 use super::OwnField;
-use crate::formula::{Formula, Texts, Which};
+use crate::formula::{Formula, Lost, Texts};
 use crate::kinds::prelude::*;
 use crate::reader::{Mistakes, Tree, amount};
 
@@ -85,9 +86,13 @@ impl Formulas {
         self.formulas.first()?.samples()
     }
 
-    /// The formula that had no finite value first, in words.
-    pub fn lost(&self) -> Option<String> {
-        let lost = self.formulas.first()?.lost(Which::First)?;
-        Some(lost.to_string())
+    /// Forgets which formulas had no finite value.
+    pub fn forget(&self) {
+        self.formulas.iter().take(1).for_each(Formula::forget);
+    }
+
+    /// The formula by which a run ended with this error.
+    pub fn lost_by(&self, error: &RunError) -> Option<Lost> {
+        self.formulas.first()?.lost_by(error)
     }
 }

@@ -426,7 +426,7 @@ impl Own {
         &self,
         method: &MethodSpec,
         y0: &[f64],
-        steps: StepByStep<'_>,
+        steps: StepByStep,
     ) -> Result<Box<dyn Stepper>, RunError> {
         self.run.stepper(method, y0, steps)
     }

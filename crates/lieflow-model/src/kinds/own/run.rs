@@ -41,7 +41,7 @@ pub trait Run: Send + Sync {
         &self,
         method: &MethodSpec,
         y0: &[f64],
-        steps: StepByStep<'_>,
+        steps: StepByStep,
     ) -> Result<Box<dyn Stepper>, RunError>;
     /// As [`Own::curve`](super::Own::curve).
     ///
@@ -191,7 +191,7 @@ where
         &self,
         method: &MethodSpec,
         y0: &[f64],
-        steps: StepByStep<'_>,
+        steps: StepByStep,
     ) -> Result<Box<dyn Stepper>, RunError> {
         P::stepper(method, &self.problem, self.point(y0)?, steps, self.points())
     }
