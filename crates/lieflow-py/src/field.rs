@@ -1,6 +1,6 @@
 //! f, events and changes of a run: Python callables, and addresses of C functions.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
 
 use lieflow_model::kinds::own::OwnField;
@@ -8,11 +8,12 @@ use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyFloat, PyList, PyTuple};
 
-/// The first exception of the callables of a run, and the flag that ends the run.
+/// The first exception of the callables of a run, the flag that ends the run, and the calls of f.
 #[derive(Default)]
 pub(crate) struct Raised {
     first: Mutex<Option<PyErr>>,
     pub(crate) stop: AtomicBool,
+    calls: AtomicU64,
 }
 
 impl Raised {
@@ -26,6 +27,11 @@ impl Raised {
     /// The exception, if there is one.
     pub(crate) fn take(&self) -> Option<PyErr> {
         self.first.lock().ok().and_then(|mut first| first.take())
+    }
+
+    /// The calls of a function of Python after the first one, which checks its value; None where f is no such function.
+    pub(crate) fn calls(&self) -> Option<u64> {
+        self.calls.load(Ordering::Relaxed).checked_sub(1)
     }
 }
 
@@ -163,7 +169,10 @@ fn read_value(
 /// The field of a callable.
 pub(crate) fn of_callable(f: Callable, shape: &[usize]) -> Arc<OwnField> {
     let shape = shape.to_vec();
-    Arc::new(move |t, y, v| f.call(t, y, |value| read_value(value, ("f", t), &shape, v)).is_some())
+    Arc::new(move |t, y, v| {
+        f.raised.calls.fetch_add(1, Ordering::Relaxed);
+        f.call(t, y, |value| read_value(value, ("f", t), &shape, v)).is_some()
+    })
 }
 
 /// The number of an event.

@@ -363,7 +363,8 @@ impl Seen {
         result.set_item("t_end", t_end)?;
         result.set_item("y_end", field::array(py, shape, &y_end)?)?;
         result.set_item("state", PyArray1::from_vec(py, state))?;
-        result.set_item("nfev", stats.evaluations)?;
+        // An implicit method does not count them.
+        result.set_item("nfev", stats.evaluations.or_else(|| raised.calls()))?;
         result.set_item("nsteps", stats.accepted)?;
         result.set_item("nrejected", stats.rejected)?;
         result.set_item("largest_step", stats.largest_step)?;

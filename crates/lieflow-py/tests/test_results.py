@@ -113,7 +113,11 @@ def test_a_body_by_its_coadjoint_action():
 
 
 @pytest.mark.parametrize(
-    ("method", "options"), [("rkmk4 exp", {"steps": 10}), (None, {}), ("rkmk bs3 exp", {"rtol": 1e-5}), (None, {"dense_output": True})]
+    ("method", "options"),
+    [
+        ("rkmk4 exp", {"steps": 10}), (None, {}), ("rkmk bs3 exp", {"rtol": 1e-5}), (None, {"dense_output": True}),
+        ("rkmk-gauss4", {"steps": 10}), ("rkmk-gauss2-symmetric", {"rtol": 1e-4}),
+    ],
 )
 @pytest.mark.parametrize("group", ["SO(3)", "SO(4)", "U(2)", PARTS])
 def test_every_call_of_f_is_counted(method, options, group):

@@ -208,7 +208,8 @@ class Result:
     success : bool
         True if status ≥ 0.
     nfev, nsteps, nrejected : int
-        Evaluations of f (None if the method does not count them), accepted steps, rejected attempts.
+        Evaluations of f, accepted steps, rejected attempts. An implicit method counts those of a Python function only: else
+        nfev is None.
     largest_step : float
         The largest accepted step.
     t_end, y_end : float, array
