@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::solve::knots;
-use crate::tree::{from_zero, mistakes, tree};
+use crate::tree::{in_python, mistakes, tree};
 
 /// Formulas in t and the numbers of y.
 #[pyclass(frozen, module = "lieflow._lieflow")]
@@ -17,7 +17,7 @@ pub(crate) struct Formulas(pub(crate) own::Formulas, Py<PyAny>);
 #[pymethods]
 impl Formulas {
     #[new]
-    /// `place` makes the place of a formula for the user of its key.
+    /// `place` turns the key of a formula into the place that the user knows.
     fn new(
         variables: Vec<String>,
         counts: Vec<usize>,
@@ -43,9 +43,8 @@ impl Formulas {
 impl Formulas {
     /// The formula by which a run ended with this error, in words.
     pub(crate) fn lost_by(&self, py: Python<'_>, error: &RunError) -> Option<PyResult<String>> {
-        let lost = self.0.lost_by(error)?;
-        let place = self.1.bind(py).call1((from_zero(&lost.key),)).and_then(|key| key.extract());
-        let through = lost.through.as_deref().map(from_zero);
-        Some(place.map(|key| Lost { key, through, ..lost }.to_string()))
+        let lost = in_python(self.0.lost_by(error)?);
+        let place = self.1.bind(py).call1((&lost.key,)).and_then(|key| key.extract());
+        Some(place.map(|key| Lost { key, ..lost }.to_string()))
     }
 }

@@ -25,7 +25,7 @@ use crate::run::{
 };
 use crate::solve::knots;
 use crate::stepper::Stepper;
-use crate::tree::{in_words, mistake, mistakes, tree};
+use crate::tree::{in_python, mistake, mistakes, tree};
 
 /// What a value of this shape is, in words.
 fn shape_words(shape: Shape) -> String {
@@ -379,7 +379,7 @@ impl Model {
         let status = done.map(|outcome| outcome.status);
         let lost = status.as_ref().err().and_then(|error| self.problem.formula()?.lost_by(error));
         let result = watch.seen.into_dict(py, &raised, status, (&shape, LONGEST), Some(&steps))?;
-        result.set_item("lost", lost.map(in_words))?;
+        result.set_item("lost", lost.map(|lost| in_python(lost).to_string()))?;
         result.set_item("curve", curve.map(|curve| Py::new(py, curve)).transpose()?)?;
         Ok(result)
     }

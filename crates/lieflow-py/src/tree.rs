@@ -65,7 +65,7 @@ pub(crate) fn untree<'py>(py: Python<'py>, x: &Tree) -> PyResult<Bound<'py, PyAn
 
 /// A text with its places of entries, such as `a[1,2]`, counted from 0. A list of numbers, which stands behind no name, is
 /// left as it is.
-pub(crate) fn from_zero(text: &str) -> String {
+fn from_zero(text: &str) -> String {
     let mut parts = text.split('[');
     let first = parts.next().unwrap_or_default().to_owned();
     parts.fold(first, |all, part| {
@@ -83,9 +83,9 @@ pub(crate) fn from_zero(text: &str) -> String {
 }
 
 /// A formula without a value, with its keys counted from 0.
-pub(crate) fn in_words(lost: Lost) -> String {
+pub(crate) fn in_python(lost: Lost) -> Lost {
     let through = lost.through.as_deref().map(from_zero);
-    Lost { key: from_zero(&lost.key), through, ..lost }.to_string()
+    Lost { key: from_zero(&lost.key), through, ..lost }
 }
 
 /// A mistake as (argument, what is wrong, advice).

@@ -336,8 +336,8 @@ impl<'a> Recorder<'a> {
         self.room.check(self.bytes())
     }
 
-    /// What was seen so far where no row is, too. The rows alone do not bring it back: two numbers of each written quantity
-    /// and of each event, and then a drift of each invariant, -1 where there is none.
+    /// The numbers that the rows alone do not bring back, because they were seen between rows. Each written quantity and each
+    /// event has two. Each invariant has its largest drift, or -1 if it has no drift yet.
     fn seen_anywhere(&self) -> Seen {
         let singular = self.singular.iter().flat_map(|&(far, t)| [far, t]);
         let between = self.between.iter().flat_map(Between::seen);

@@ -324,14 +324,19 @@ fn the_drifts_at_the_ends_of_steps_go_on() {
     let whole = drifts(&folder);
     let largest = whole["probability"]["max_at_ends_of_steps"].as_f64().unwrap();
     assert!(largest > 100.0, "{whole}");
-    let mut child = folder.command(&args).stdout(Stdio::null()).spawn().unwrap();
+    kill_and_resume(&folder, &args);
+    assert_eq!(drifts(&folder), whole);
+}
+
+/// Kills a run into `out` once it has saved a state, and goes on from there.
+fn kill_and_resume(folder: &Folder, args: &[&str]) {
+    let mut child = folder.command(args).stdout(Stdio::null()).spawn().unwrap();
     until(&mut child, || {
         fs::read(folder.path().join("out/run.state")).is_ok_and(|state| state.len() > 64)
     });
     child.kill().unwrap();
     child.wait().unwrap();
-    folder.lieflow(&[&args[..], &["--resume"]].concat()).ok();
-    assert_eq!(drifts(&folder), whole);
+    folder.lieflow(&[args, &["--resume"]].concat()).ok();
 }
 
 /// What a run saw between its rows goes on, too. Only before its first state the pitch comes near to 90 degrees, between two
@@ -367,13 +372,7 @@ error_check = false
     let notes = whole.2["notes"].to_string();
     assert!(notes.contains("of its singular angle at t = 60:"), "{notes}");
     assert!(!notes.contains("event"), "{notes}");
-    let mut child = folder.command(&args).stdout(Stdio::null()).spawn().unwrap();
-    until(&mut child, || {
-        fs::read(folder.path().join("out/run.state")).is_ok_and(|state| state.len() > 64)
-    });
-    child.kill().unwrap();
-    child.wait().unwrap();
-    folder.lieflow(&[&args[..], &["--resume"]].concat()).ok();
+    kill_and_resume(&folder, &args);
     let resumed = results(&folder, "out");
     assert_eq!(resumed.2, whole.2);
     assert_eq!(resumed, whole);

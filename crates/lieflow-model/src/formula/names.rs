@@ -94,7 +94,7 @@ impl Names {
         Ok(names)
     }
 
-    /// The names of formulas that may not change with time. The names of `varying` do.
+    /// The names for formulas that must not change with time. A name in `varying` changes with time and is refused.
     pub(super) fn of_numbers(varying: Arc<BTreeSet<String>>) -> Names {
         Names { varying: Some(varying), ..Names::default() }
     }

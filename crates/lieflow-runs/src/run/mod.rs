@@ -335,8 +335,8 @@ pub trait Runnable:
     fn operations(&self, spec: &MethodSpec, y: PointOf<Self>, steps: &Steps) -> Option<f64>;
 }
 
-/// A function that appends the numbers of the row at (t, y). It is behind a pointer, so that every kind with a type of problem shares
-/// what is compiled for it.
+/// A function that appends the numbers of the row at (t, y). It is behind a pointer, so that every kind with a type of
+/// problem shares what is compiled for it.
 pub type RowOf<'a, P> = dyn Fn(f64, &PointOf<P>, &mut Vec<f64>) + 'a;
 
 /// The values of the row at (t, y), for a curve that outlives its run.
