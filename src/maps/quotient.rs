@@ -2,7 +2,7 @@
 
 use faer::Mat;
 
-use crate::dense::{Lu, RCOND_MIN, is_finite, mul, norm_frobenius, norm1};
+use crate::dense::{Lu, RCOND_MIN, is_finite, mul, norm_frobenius, norm1, orthogonalise};
 use crate::error::StepError;
 use crate::groups::{AlgebraMatrix, Form, MatrixGroup};
 
@@ -15,6 +15,8 @@ pub(super) struct Quotient {
     pub(super) plus: Mat<f64>,
     /// Scratch.
     pub(super) product: Mat<f64>,
+    /// More scratch.
+    pub(super) power: Mat<f64>,
     pub(super) lu: Lu,
 }
 
@@ -24,7 +26,7 @@ const PIVOTS_SAFE: f64 = 1e-3;
 impl Quotient {
     pub(super) fn new(n: usize) -> Self {
         let z = || Mat::zeros(n, n);
-        Quotient { minus: z(), plus: z(), product: z(), lu: Lu::new(n) }
+        Quotient { minus: z(), plus: z(), product: z(), power: z(), lu: Lu::new(n) }
     }
 
     /// The LU of D(u), for a D(u) that is known to be regular.
@@ -46,20 +48,36 @@ impl Quotient {
         well_conditioned(&mut self.lu, &self.minus, &mut self.product, map, what)
     }
 
-    /// g ← D(u)⁻¹·D(−u).
-    pub(super) fn form(&mut self, what: &'static str, g: &mut Mat<f64>) -> Result<(), StepError> {
+    /// g ← D(u)⁻¹·D(−u), put back on SO(n) where the solve has lost more than rounding of it.
+    pub(super) fn form(
+        &mut self,
+        (group, u): (&MatrixGroup, &AlgebraMatrix),
+        what: &'static str,
+        g: &mut Mat<f64>,
+    ) -> Result<(), StepError> {
         g.copy_from(&self.plus);
         self.lu.solve(g.as_mut());
-        finite(g, what)
+        finite(g, what)?;
+        if is_put_back(group, u) {
+            orthogonalise(g, [&mut self.product, &mut self.power]);
+        }
+        Ok(())
     }
 
-    /// y ← D(u)⁻¹·D(−u)·x: solves for as many columns as x has.
+    /// y ← D(u)⁻¹·D(−u)·x: solves for as many columns as x has, or makes g where that is put back.
     pub(super) fn on(
         &mut self,
+        (group, u): (&MatrixGroup, &AlgebraMatrix),
         what: &'static str,
+        g: &mut Mat<f64>,
         x: &Mat<f64>,
         y: &mut Mat<f64>,
     ) -> Result<(), StepError> {
+        if is_put_back(group, u) {
+            self.form((group, u), what, g)?;
+            mul(y, g.as_ref(), x.as_ref());
+            return Ok(());
+        }
         mul(y, self.plus.as_ref(), x.as_ref());
         self.lu.solve(y.as_mut());
         finite(y, what)
@@ -76,7 +94,7 @@ impl Quotient {
 const NORM_EXACT_SKEW: f64 = 4.0;
 
 /// Is the quotient of u put back on SO(n)?
-pub(super) fn is_put_back(group: &MatrixGroup, u: &AlgebraMatrix) -> bool {
+fn is_put_back(group: &MatrixGroup, u: &AlgebraMatrix) -> bool {
     matches!(group.form(), Form::Identity) && norm_frobenius(u) > NORM_EXACT_SKEW
 }
 

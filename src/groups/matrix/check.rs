@@ -55,10 +55,7 @@ impl MatrixGroup {
     /// Is u, the argument of a map, n×n and finite? `what` names it in words.
     pub(crate) fn operand(&self, what: &'static str, u: &Mat<f64>) -> Result<(), StepError> {
         self.fits("u", u)?;
-        match is_finite(u) {
-            true => Ok(()),
-            false => Err(StepError::NotFinite { what }),
-        }
+        StepError::finite(is_finite(u), what)
     }
 
     /// Is x, a state, n×`expected_cols` and finite?

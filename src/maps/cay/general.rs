@@ -3,17 +3,16 @@
 use faer::Mat;
 
 use super::{Cay, CayleyGroup};
-use crate::dense::{Lu, mul, norm_frobenius, orthogonalise, scaled_sum};
+use crate::dense::{Lu, norm_frobenius, scaled_sum};
 use crate::error::{Error, RCOND_MIN, StepError};
 use crate::groups::{AlgebraMatrix, Form, GroupMatrix, MatrixGroup};
 use crate::maps::CoordinateMap;
-use crate::maps::quotient::{Quotient, finite, is_put_back, well_conditioned};
+use crate::maps::quotient::{Quotient, finite, well_conditioned};
 
 /// The values that cay stores at u ∈ 𝔤 ⊂ gl(n): 𝟙 ± u/2, and the LU of 𝟙 − u/2.
 #[derive(Debug)]
 pub struct CayAt {
     quotient: Quotient,
-    square: Mat<f64>,
 }
 
 impl CayAt {
@@ -46,8 +45,7 @@ impl CoordinateMap<MatrixGroup> for Cay {
         "cay"
     }
     fn at(&self, group: &MatrixGroup) -> Result<CayAt, Error> {
-        let n = group.n();
-        Ok(CayAt { quotient: Quotient::new(n), square: Mat::zeros(n, n) })
+        Ok(CayAt { quotient: Quotient::new(group.n()) })
     }
     fn psi(
         &self,
@@ -57,11 +55,7 @@ impl CoordinateMap<MatrixGroup> for Cay {
         g: &mut GroupMatrix,
     ) -> Result<(), StepError> {
         at.prepare(group, u)?;
-        at.quotient.form("cay(u)", g)?;
-        if is_put_back(group, u) {
-            orthogonalise(g, [&mut at.quotient.product, &mut at.square]);
-        }
-        Ok(())
+        at.quotient.form((group, u), "cay(u)", g)
     }
     fn psi_on(
         &self,
@@ -72,13 +66,8 @@ impl CoordinateMap<MatrixGroup> for Cay {
         x: &Mat<f64>,
         y: &mut Mat<f64>,
     ) -> Result<(), StepError> {
-        if group.fits("u", u).is_ok() && is_put_back(group, u) {
-            self.psi(group, u, at, g)?;
-            mul(y, g.as_ref(), x.as_ref());
-            return Ok(());
-        }
         at.prepare(group, u)?;
-        at.quotient.on("cay(u)·x", x, y)
+        at.quotient.on((group, u), "cay(u)·x", g, x, y)
     }
     fn dpsi_inv(
         &self,

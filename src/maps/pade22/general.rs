@@ -3,11 +3,11 @@
 use faer::Mat;
 
 use super::Pade22;
-use crate::dense::{AdSchur, mul, norm_frobenius, orthogonalise, scaled_sum};
+use crate::dense::{AdSchur, mul, norm_frobenius, scaled_sum};
 use crate::error::{Error, StepError};
 use crate::groups::{AlgebraMatrix, Form, GroupMatrix, LieAlgebra, MatrixGroup};
 use crate::maps::CoordinateMap;
-use crate::maps::quotient::{Quotient, finite, is_put_back};
+use crate::maps::quotient::{Quotient, finite};
 
 /// Doubling converges fast up to this ‖u‖².
 const DOUBLING_MAX: f64 = 3.0;
@@ -21,7 +21,6 @@ const SQUARE_MAX_SKEW: f64 = 5e14;
 pub struct Pade22At {
     quotient: Quotient,
     square: Mat<f64>,
-    power: Mat<f64>,
     schur: Box<AdSchur>,
 }
 
@@ -59,7 +58,6 @@ impl CoordinateMap<MatrixGroup> for Pade22 {
         Ok(Pade22At {
             quotient: Quotient::new(n),
             square: Mat::zeros(n, n),
-            power: Mat::zeros(n, n),
             schur: Box::new(AdSchur::new(n, group.ad_form())),
         })
     }
@@ -71,11 +69,7 @@ impl CoordinateMap<MatrixGroup> for Pade22 {
         g: &mut GroupMatrix,
     ) -> Result<(), StepError> {
         at.prepare(group, u)?;
-        at.quotient.form("pade22(u)", g)?;
-        if is_put_back(group, u) {
-            orthogonalise(g, [&mut at.quotient.product, &mut at.power]);
-        }
-        Ok(())
+        at.quotient.form((group, u), "pade22(u)", g)
     }
     fn psi_on(
         &self,
@@ -86,13 +80,8 @@ impl CoordinateMap<MatrixGroup> for Pade22 {
         x: &Mat<f64>,
         y: &mut Mat<f64>,
     ) -> Result<(), StepError> {
-        if group.fits("u", u).is_ok() && is_put_back(group, u) {
-            self.psi(group, u, at, g)?;
-            mul(y, g.as_ref(), x.as_ref());
-            return Ok(());
-        }
         at.prepare(group, u)?;
-        at.quotient.on("pade22(u)·x", x, y)
+        at.quotient.on((group, u), "pade22(u)·x", g, x, y)
     }
     fn dpsi_inv(
         &self,
@@ -102,9 +91,9 @@ impl CoordinateMap<MatrixGroup> for Pade22 {
         v: &mut AlgebraMatrix,
     ) -> Result<(), StepError> {
         group.fits("v", v)?;
-        let Pade22At { quotient, square, power, schur } = at;
+        let Pade22At { quotient, square, schur } = at;
         quotient.conjugate(v);
-        let Quotient { minus, product, .. } = quotient;
+        let Quotient { minus, product, power, .. } = quotient;
         let norm = group.norm(u);
         if norm * norm > DOUBLING_MAX {
             schur.factor(u)?;
