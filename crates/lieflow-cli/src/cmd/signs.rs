@@ -3,11 +3,10 @@
 use lieflow_model::problem::EventPlan;
 
 use super::watch::Watch;
+use crate::measure::GOLDEN;
 
 /// The number of times at which the sign of an event is looked at.
 const SIGNS: u32 = 2000;
-/// The golden section, whose multiples keep away from those of any step.
-const GOLDEN: f64 = 0.618_033_988_749_894_8;
 
 /// The changes of sign of each event on the exact motion, between times that are no multiples of a step: it has at least so
 /// many zeros. The count is 0 where a column of the event has two values there, such as one of a quaternion.

@@ -45,6 +45,9 @@ pub enum Size {
     Tolerance(f64),
 }
 
+/// The golden section. Its multiples keep away from those of any step and of any period.
+pub(crate) const GOLDEN: f64 = 0.618_033_988_749_894_8;
+
 /// The flag of a measurement that nothing stops.
 pub static NEVER: AtomicBool = AtomicBool::new(false);
 

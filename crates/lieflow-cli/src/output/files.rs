@@ -8,6 +8,9 @@ use lieflow_figures::Page;
 
 use crate::error::CliError;
 
+/// What is written bit by bit reaches its file when it has this many bytes.
+pub(super) const BYTES: usize = 1 << 16;
+
 /// Write a file at once: no half of it ever has this name, and what has the name is on the disk.
 ///
 /// # Errors

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use lieflow_figures::csv::field;
 
-use super::files::{name_file, remove_old};
+use super::files::{BYTES, name_file, remove_old};
 use crate::error::CliError;
 
 /// The names of a file of rows: when its run is complete, and until then.
@@ -17,10 +17,8 @@ pub const TRAJECTORY: Names = ["trajectory.csv", "trajectory.partial.csv"];
 /// The zeros of its events.
 pub const EVENTS: Names = ["events.csv", "events.partial.csv"];
 
-/// Lines are written when they have this many bytes, and when the state of the run is saved.
-const BYTES: usize = 1 << 16;
-
-/// A file of rows that is being written, in whole lines. Only [`finish`](RowFile::finish) gives it its name.
+/// A file of rows that is being written, in whole lines, which reach it when they have `BYTES`, and when the state of
+/// the run is saved. Only [`finish`](RowFile::finish) gives it its name.
 #[derive(Debug)]
 pub struct RowFile {
     folder: PathBuf,

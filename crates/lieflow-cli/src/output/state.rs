@@ -22,7 +22,7 @@ use std::path::{Path, PathBuf};
 
 use fnv::FnvHasher;
 
-use super::files::{remove_old, write_file};
+use super::files::{BYTES, remove_old, write_file};
 use crate::error::CliError;
 
 const STATE: &str = "run.state";
@@ -37,9 +37,6 @@ const HEAD: usize = 7;
 
 /// The numbers that a run saw where it has no row.
 pub type Seen = Vec<f64>;
-
-/// Records are written when they have this many bytes.
-const BYTES: usize = 1 << 16;
 
 /// What a record is of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

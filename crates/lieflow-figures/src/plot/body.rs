@@ -1,14 +1,11 @@
 //! A body that turns: a box at the attitudes of a motion, and the way of one of its axes in space.
 
-use super::camera::{Camera, Vec3, dot, norm};
+use super::camera::{CENTRE, Camera, HEIGHT, Vec3, WIDTH, dot, norm};
 use super::svg::{Opening, arrow_head, polyline, px, slug, text};
 use super::theme;
 use super::thin::thin_path;
 
-/// The size of the picture, the centre of the body, and the pixels of half the diagonal of the box.
-const WIDTH: f64 = 520.0;
-const HEIGHT: f64 = 458.0;
-const CENTRE: (f64, f64) = (260.0, 248.0);
+/// The pixels of half the diagonal of the box.
 const SCALE: f64 = 158.0;
 
 /// The length of the axes of space, and how far their names are, in halves of the diagonal.

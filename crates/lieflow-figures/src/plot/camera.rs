@@ -1,5 +1,11 @@
 //! Vectors, the orthographic projection and the cutting of lines and polygons.
 
+/// The size of a picture of space in pixels, without the names of its paths.
+pub(super) const WIDTH: f64 = 520.0;
+pub(super) const HEIGHT: f64 = 458.0;
+/// The pixel of a body, or of a sphere, in its middle.
+pub(super) const CENTRE: (f64, f64) = (260.0, 248.0);
+
 /// A vector in space.
 pub(crate) type Vec3 = [f64; 3];
 

@@ -1,6 +1,6 @@
 //! Paths in space, in a box with one scale for its three axes.
 
-use super::camera::{Camera, Vec3, norm};
+use super::camera::{Camera, HEIGHT, Vec3, WIDTH, norm};
 use super::labels::{self, ROW};
 use super::scale::{Axis, nice_step};
 use super::sphere::Path;
@@ -9,9 +9,7 @@ use super::theme;
 use super::thin::thin_path;
 use crate::number::short;
 
-/// The size of the picture without the names of the paths, and the frame that the box fills.
-const WIDTH: f64 = 520.0;
-const HEIGHT: f64 = 458.0;
+/// The frame that the box fills.
 const FRAME: [(f64, f64); 2] = [(78.0, 52.0), (452.0, 396.0)];
 
 /// A side of the box is at least this part of the longest one: a path in a plane has a box, too.

@@ -1,16 +1,11 @@
 //! Paths on a sphere, with an ellipsoid that they lie on, too.
 
-use super::camera::{Camera, Vec3, clip, dot, norm, split};
+use super::camera::{CENTRE, Camera, HEIGHT, Vec3, WIDTH, clip, dot, norm, split};
 use super::labels::{self, ROW};
 use super::scene::{Kind, Line, Scene};
 use super::series::{Marker, Series};
 use super::svg::{Opening, arrow_head, polyline, px, slug, text};
 use super::theme::{self, SHADES};
-
-/// The size of the picture without the names of the paths, and the centre of the sphere.
-const WIDTH: f64 = 520.0;
-const HEIGHT: f64 = 458.0;
-const CENTRE: (f64, f64) = (260.0, 248.0);
 
 /// The pixels from the centre to the edge of the view.
 const HALF: f64 = 196.0;

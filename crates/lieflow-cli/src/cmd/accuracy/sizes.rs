@@ -4,13 +4,11 @@ use lieflow_model::schema::{Component, Observable, Row, length};
 
 use super::{Check, FEW, OWN};
 use crate::cmd::apart::{Size, parts_of};
-use crate::measure::RETURNS;
+use crate::measure::{GOLDEN, RETURNS};
 use crate::output::RowSample;
 
 /// At so many times between the rows such a part is looked at.
 const BETWEEN: usize = 32;
-/// No period divides it.
-const GOLDEN: f64 = 0.618_033_988_749_895;
 
 /// The size of a part in these rows.
 pub(super) fn size((observable, part): (&Observable, &Component), rows: &RowSample<'_>) -> Size {
