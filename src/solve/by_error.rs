@@ -117,6 +117,7 @@ impl Timeline {
                 let Pacer::ByError(Chooser { wall, obstacle, .. }) = self.pacer else {
                     return Ok(());
                 };
+                let h = h.min(self.largest_size(FARTHEST_TURN));
                 return Err(self.underflow(h, obstacle.filter(|_| wall.is_some())));
             }
             self.see_noise_again(run.points(), size);
@@ -316,11 +317,14 @@ impl Timeline {
         if h0.is_infinite() {
             return 1.0; // nothing moves, and nothing ends
         }
-        let end = self.t + h0.copysign(stop - self.t);
+        let is_whole = h0 == span;
+        let end = if is_whole { stop } else { self.t + h0.copysign(stop - self.t) };
         if end == self.t {
             return if still { span } else { h0 };
         }
-        let trial = Step { n: self.stats.accepted, t: self.t, h: end - self.t };
+        // No stage is at `stop`, where f may jump.
+        let trial = self.step_to(end, end - self.t, is_whole);
+        let end = trial.t + trial.h;
         self.attempted(1);
         if points.attempt(trial, end, &Streak::ONE).ratio.is_err() {
             return h0;

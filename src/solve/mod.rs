@@ -21,6 +21,7 @@ mod continuous;
 mod control;
 mod drift;
 mod drive;
+mod ends;
 mod events;
 mod grid;
 mod held;

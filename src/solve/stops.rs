@@ -74,3 +74,14 @@ impl Stops {
         Ok(all)
     }
 }
+
+/// The stages of a step to a jump of f are so many rounding units of time before it.
+pub(super) const MARGIN: f64 = 4.0;
+
+/// A rounding unit of time, in the direction from t to `end`; 0 where a step between them is almost as short as that, or the
+/// unit has no half.
+pub(super) fn unit(t: f64, end: f64) -> f64 {
+    let unit = f64::EPSILON * t.abs().max(end.abs());
+    let counts = (end - t).abs() > 100.0 * unit && unit >= f64::MIN_POSITIVE;
+    if counts { unit.copysign(end - t) } else { 0.0 }
+}

@@ -5,7 +5,7 @@ use super::grid::TimeGrid;
 use super::noise::Noise;
 use super::points::{AnyPoints, Place, Saved};
 use super::stats::{Cadence, RunError, Stats};
-use super::stops::Stop;
+use super::stops::{MARGIN, Stop, unit};
 use super::streak::{Reach, Run};
 use crate::error::{Error, Failure, StepError};
 use crate::methods::{Facts, MapCounts, Step, StepCost};
@@ -95,17 +95,6 @@ pub(super) struct Timeline {
     pub(super) cadence: Cadence,
     pub(super) stats: Stats,
     pub(super) facts: Facts,
-}
-
-/// The stages of a step to a jump of f are so many rounding units of time before it.
-const MARGIN: f64 = 4.0;
-
-/// A rounding unit of time, in the direction from t to `end`; 0 where a step between them is almost as short as that, or the
-/// unit has no half.
-fn unit(t: f64, end: f64) -> f64 {
-    let unit = f64::EPSILON * t.abs().max(end.abs());
-    let counts = (end - t).abs() > 100.0 * unit && unit >= f64::MIN_POSITIVE;
-    if counts { unit.copysign(end - t) } else { 0.0 }
 }
 
 /// n + more, if both are counted.
@@ -257,51 +246,6 @@ impl Timeline {
         }
     }
 
-    /// Is t a stop at which f jumps, and may a stage be there?
-    fn is_after_jump(&self) -> bool {
-        self.jumped_by_stop && self.t == self.jumped_at && !self.facts.stages_within
-    }
-
-    /// The step to `end`, of size h. If f jumps there, no stage is at `end`, and if t is a stop at which f jumps, none is at t.
-    ///
-    /// A step to a jump has its whole size, and begins a few rounding units before t. One from a jump begins as much after t.
-    /// If f may jump at both, or may not be evaluated after `end`, the step is shorter by a rounding of t at each jump.
-    pub(super) fn step_to(&self, end: f64, mut h: f64, jumps: bool) -> Step<f64> {
-        let (n, mut t) = (self.stats.accepted, self.t);
-        let unit = unit(t, end);
-        if self.is_after_jump() && unit != 0.0 {
-            if !jumps && end != self.goal && end != self.t1 {
-                return Step { n, t: t + MARGIN * unit, h };
-            }
-            let next = if unit > 0.0 { t.next_up() } else { t.next_down() };
-            let late = if t == 0.0 { unit } else { next - t };
-            (t, h) = (t + late, h - late);
-        }
-        if !jumps {
-            return Step { n, t, h };
-        }
-        if self.t != self.jumped_at {
-            t -= MARGIN * unit;
-            // Times of a grid that begins far from 0 have the rounding of its start: h may end after `end`.
-            while unit != 0.0 && (t + h - end) * unit.signum() >= 0.0 {
-                t -= (t + h - end) + MARGIN * unit;
-            }
-            return Step { n, t, h };
-        }
-        // The end of a step of a grid may be a rounding after `end`. Half a unit is no change of a step that is longer than
-        // both times, across t = 0.
-        let mut less = 0.5 * unit;
-        // The step may be taken in two halves, whose times are rounded, too.
-        let ends = |h: f64| [t + h, t + 0.5 * h + 0.5 * h];
-        while unit != 0.0 && ends(h).iter().any(|at| (at - end) * unit.signum() >= 0.0) {
-            if h - less == h {
-                less *= 2.0;
-            }
-            h -= less;
-        }
-        Step { n, t, h }
-    }
-
     /// The caller asks for a state at this time. The limit of attempts begins anew.
     pub(super) fn ask_for(&mut self, goal: f64) {
         self.goal = goal;
@@ -343,10 +287,7 @@ impl Timeline {
         *done += u64::from(!before);
         let (step, end) = match before || (near && jumps) {
             true => (self.step_to(stop, grid.size_to(first, stop), jumps), stop),
-            false if self.is_after_jump() => {
-                (self.step_to(end, grid.step::<f64>(first).h, false), end)
-            }
-            false => (Step { n, ..grid.step(first) }, end),
+            false => (self.step_to(end, grid.step::<f64>(first).h, false), end),
         };
         self.see_turns(points, step.h);
         if let Err(source) = points.step(step) {

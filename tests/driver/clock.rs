@@ -1,5 +1,6 @@
 //! Times of a clock: t is large beside the steps.
 
+use core::cell::Cell;
 use core::f64::consts::TAU;
 
 use lieflow::actions::{LeftTranslation, Linear};
@@ -7,16 +8,21 @@ use lieflow::groups::{So3, Translations};
 use lieflow::maps::Exp;
 use lieflow::methods::commutator_free::{CF4, CF43};
 use lieflow::methods::magnus::Magnus4;
-use lieflow::methods::tableau::{BS3, DOP853, DOPRI5};
+use lieflow::methods::tableau::{BS3, DOP853, DOPRI5, RK4};
 use lieflow::methods::{CommutatorFree, Doubling, Rk, Rkmk};
 use lieflow::nalgebra::{Matrix3, Vector3};
-use lieflow::problems::{Flow, LinearFlow};
+use lieflow::problems::{Flow, LinearFlow, Problem};
 use lieflow::{Solve, Stats};
 
 /// Turns about z at this rate.
 fn turn(
     rate: impl Fn(f64) -> f64 + Copy,
 ) -> LinearFlow<So3<f64>, LeftTranslation, impl Fn(f64, &mut Vector3<f64>) + Copy> {
+    Flow::of_time(So3::new(), LeftTranslation, move |t, v: &mut Vector3<f64>| v.z = rate(t))
+}
+
+/// Turns about z at a rate that records its times.
+fn turn_by(rate: impl Fn(f64) -> f64) -> impl Problem<Group = So3, Action = LeftTranslation> {
     Flow::of_time(So3::new(), LeftTranslation, move |t, v: &mut Vector3<f64>| v.z = rate(t))
 }
 
@@ -59,6 +65,55 @@ fn steps_to_jumps_have_their_whole_size() {
         }
         check![Rkmk::new(DOPRI5, Exp), Rkmk::new(DOP853, Exp)];
     }
+}
+
+/// No stage is before the start of a run, nor after its end, nor after a time that the caller asks for: f may have no value
+/// there.
+#[test]
+fn no_stage_is_after_the_end() {
+    let (least, most) = (Cell::new(f64::INFINITY), Cell::new(f64::NEG_INFINITY));
+    let flow = turn_by(|t| {
+        least.set(least.get().min(t));
+        most.set(most.get().max(t));
+        1e-3 * (1.0 + t.sin())
+    });
+    macro_rules! check {
+        ($($method:expr),*) => {$(
+            let method = $method;
+            for (a, b) in [(0.1, 1.0), (0.0, 0.3), (-0.7, 1.1), (5.3, 1e4), (-2.0 / 3.0, 1e-9)] {
+                for span in [[a, b], [b, a]] {
+                    let within = |what: &str| {
+                        let [from, to] = [least.take(), most.take()];
+                        least.set(f64::INFINITY);
+                        most.set(f64::NEG_INFINITY);
+                        assert!(from >= a && to <= b, "{span:?} {what}: f at {from} to {to}");
+                    };
+                    for steps in [1, 3, 7, 10, 49] {
+                        let run = Solve::new(&flow, &method, span).steps(steps);
+                        run.run(Matrix3::identity()).expect("a run");
+                        within(&format!("{steps} steps"));
+                    }
+                    let run = Solve::new(&flow, &method, span).tolerances(1e-6, 1e-6);
+                    run.run(Matrix3::identity()).expect("a run");
+                    within("by error");
+                }
+            }
+            let mut run = Solve::new(&flow, &method, [0.0, 1.0]).dt(0.03).integrator(Matrix3::identity()).expect("a run");
+            for t in [0.3, 0.6, 0.7] {
+                run.advance_to(t).expect("a run");
+                assert!(run.t() == t && most.get() <= t, "{} after {t}", most.get());
+            }
+            least.set(f64::INFINITY);
+            most.set(f64::NEG_INFINITY);
+        )*};
+    }
+    check![
+        Rkmk::new(DOPRI5, Exp),
+        Rkmk::new(DOP853, Exp),
+        Rk(DOPRI5),
+        CommutatorFree(CF43),
+        Doubling(Rkmk::new(RK4, Exp))
+    ];
 }
 
 /// f jumps at each time of a grid whose times are rounded. No step of this grid has a stage behind the jump at its end.
