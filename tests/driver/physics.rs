@@ -8,7 +8,8 @@ use lieflow::maps::{Cay, Exp};
 use lieflow::methods::tableau::{DOP853, DOPRI5};
 use lieflow::methods::{ExactMotion, Method, Rk, Rkmk};
 use lieflow::problems::{
-    BodyMotion, Flow, RigidBody, RigidBodyAttitude, SpaceTorque, SphericalPendulum, TorqueBody,
+    BodyMotion, Exact, Flow, RigidBody, RigidBodyAttitude, SpaceTorque, SphericalPendulum,
+    TorqueBody,
 };
 use lieflow::{Error, Event, RunError, Solve};
 use nalgebra::{Matrix3, Vector3};
@@ -99,6 +100,34 @@ fn flips_of_a_free_body() {
         );
         let middle = |i: usize| 0.5 * (run.events[i].t + run.events[i + 1].t);
         assert!((middle(2) - middle(0) - 2.0 * flip).abs() < 1e-12 * flip * 4.0 + 1e-13);
+    }
+}
+
+/// Many exact steps have the error of their rounding alone: energy and |m| do not drift.
+#[test]
+fn exact_steps_do_not_drift() {
+    let steps = 50_000;
+    for (inertia, m) in [
+        ([1.0, 4.0, 4.5], V::new(1.0, 0.2, 0.5)),
+        ([1.0, 2.0, 3.0], V::new(0.1, 2.0, 0.3)),
+        ([1.0, 2.0, 3.0], V::new(1e-6, 1e-3, 2.0)),
+        ([1.0, 1.0, 2.0], V::new(0.3, 0.4, 0.5)),
+        ([1.0, 1.0, 1.0 + 1e-9], V::new(0.3, 0.4, 0.5)),
+        ([2.0, 2.0, 2.0], V::new(0.3, 0.4, 0.5)),
+        ([1e-150, 2e-150, 3e-150], V::new(0.3e-150, 0.4e-150, 0.5e-150)),
+        ([1e150, 2e150, 3e150], V::new(0.3e150, 0.4e150, 0.5e150)),
+    ] {
+        let body = RigidBody::new(inertia).expect("a body");
+        let end =
+            Solve::new(&body, &ExactMotion, [0.0, 400.0]).steps(steps).run(m).expect("a run").y;
+        let once = Exact::new(inertia, m.into(), Matrix3::identity()).expect("a body");
+        let apart = (end - once.momentum_body(400.0).expect("a time")).norm() / m.norm();
+        // The energy beside that about one axis, which a rotation about it keeps.
+        let energy = |m: &V| body.energy(m) / m.norm_squared();
+        let drift = (energy(&end) / energy(&m) - 1.0).abs();
+        println!("{inertia:?} {m:?}: {apart:.1e}, energy {drift:.1e}");
+        assert!(drift < 2e-14, "{inertia:?} {m:?}: energy {drift:e}");
+        assert!(apart < 1e-11, "{inertia:?} {m:?}: {apart:e}");
     }
 }
 
