@@ -5,7 +5,7 @@
 //!
 //! | table | order | stages | exponentials | source |
 //! |---|---|---|---|---|
-//! | [`CF3`] | 3 | 3 | 4 | Celledoni, Marthinsen, Owren 2003 |
+//! | [`CF3`] | 3 | 3 | 3 | Celledoni, Marthinsen, Owren 2003 |
 //! | [`CF4`] | 4 | 4 | 5 | the same |
 //! | [`CF43`] | 4(3) | 4, and 1 for the error | 5, and 3 | Curry, Owren 2019 |
 //!
@@ -88,7 +88,7 @@ pub(super) const fn stages<const S: usize, const N: usize>(
     stages
 }
 
-/// Order 3 with 3 stages.
+/// Order 3 with 3 stages; the update starts from the second.
 pub const CF3: ProductTableau<3> = cf3();
 
 /// [`CF3`] with room for S stages, so that methods chosen by name share one type.
@@ -102,8 +102,8 @@ pub(crate) const fn cf3<const S: usize>() -> ProductTableau<S> {
             ExponentialProduct { from: 0, factors: const { &[pad(&[0.0, 2.0 / 3.0])] } },
         ]),
         update: ExponentialProduct {
-            from: 0,
-            factors: const { &[pad(&[1.0 / 3.0]), pad(&[-1.0 / 12.0, 0.0, 0.75])] },
+            from: 1,
+            factors: const { &[pad(&[-1.0 / 12.0, 0.0, 0.75])] },
         },
         update_stages: 3,
         embedded: None,

@@ -9,8 +9,9 @@
 //! modified one, 1/Ĩ_i = σ/J_i + δ, a higher order. σ and δ are polynomials in η = ½h² Σ m_i²/J_i and κ = ½h²|m|². η
 //! and κ are constant along the motion. The coefficients depend on J and are computed once.
 //!
-//! Preserves: energy, |m|, gm and the group to rounding at every order, the Poisson structure, time symmetry. It is the
-//! exact motion with a changed time. Newton's iteration converges for h|m|/min J ≤ 1. Beyond that it may fail for some
+//! Preserves: energy, |m|, gm and the group to rounding at every order, the Poisson structure of m (order 2 also the
+//! symplectic structure of T*SO(3)), time symmetry. It is the
+//! exact motion with a changed time. Newton's iteration converges for h|m|/min J < 1. From there on it may fail for some
 //! m with [`StepError::NewtonDidNotConverge`]. Cost: 3 to 6 Newton iterations of one 3×3 solve each, one cay, and at
 //! most 30 multiplications for σ and δ; no trigonometric function.
 //! Source: J. Moser & A. P. Veselov, Comm. Math. Phys. 139 (1991); R. McLachlan & A. Zanna, Found.

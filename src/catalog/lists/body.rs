@@ -19,6 +19,7 @@ use Property::{Casimirs, Everything, Group, QuadraticInvariants, Symplectic, Tim
 
 const SPLIT: &[Property] = &[Group, Casimirs, Symplectic, TimeSymmetry];
 const ALL_FIRST: &[Property] = &[Energy, Group, Casimirs, TimeSymmetry];
+const ALL_OF_DMV2: &[Property] = &[Energy, Group, Casimirs, Symplectic, TimeSymmetry];
 const MCLACHLAN: &str = "McLachlan 1993; Reich 1996";
 const NEWTON: Cost = Cost::of(&[
     WorkItem { count: Count::Between(3, 6), operation: NewtonIteration },
@@ -28,7 +29,8 @@ const NEWTON: Cost = Cost::of(&[
 const fn dmv(name: &'static str, summary: &'static str, method: Dmv) -> MethodInfo {
     const SOURCE: &str = "Moser & Veselov 1991; McLachlan & Zanna 2005; Hairer & Vilmart 2006";
     let family = (Family::DiscreteMechanics, Needs::Body);
-    plain(family, name, method.order(), summary, ALL_FIRST, NEWTON, SOURCE, Recipe::Dmv(method))
+    let keeps = if method.order() == 2 { ALL_OF_DMV2 } else { ALL_FIRST };
+    plain(family, name, method.order(), summary, keeps, NEWTON, SOURCE, Recipe::Dmv(method))
 }
 
 /// A splitting by the axes in this order.

@@ -196,7 +196,7 @@ const FIELD: &[MethodInfo] = &[
         "cf3",
         3,
         "commutator-free, 3 stages",
-        &[times(3, Field), times(4, Exp)],
+        &[times(3, Field), times(3, Exp)],
         CMO,
         Recipe::CommutatorFree(cf3()),
     ),
