@@ -89,7 +89,7 @@ pub const OPTIMUM: [(&str, &str, u64); 9] = [
 
 /// What is printed, and what is right: the formulas that a user might take from the paper, then the
 /// parameters of its experiments.
-pub const ERRATA: [[&str; 3]; 17] = [
+pub const ERRATA: [[&str; 3]; 18] = [
     ["§2, energy in space", "E = w_sᵀ gᵀ J g w_sᵀ", "E = ½ w_sᵀ g J gᵀ w_s"],
     ["§2, before (3)", "½ m_s(Ad_g w_c) = (Ad*_g m_s)(w_c)", "½ on both sides, or on neither"],
     [
@@ -101,7 +101,7 @@ pub const ERRATA: [[&str; 3]; 17] = [
     [
         "§4.2, (18)",
         "given for the ordering 123 alone",
-        "321: methods (cos u₃ sec u₂, sin u₃ sec u₂, 0), (−sin u₃, cos u₃, 0), \
+        "321: rows (cos u₃ sec u₂, sin u₃ sec u₂, 0), (−sin u₃, cos u₃, 0), \
          (cos u₃ tan u₂, sin u₃ tan u₂, 1); both singular at u₂ = ±π/2",
     ],
     [
@@ -121,6 +121,7 @@ pub const ERRATA: [[&str; 3]; 17] = [
     ["§5.1, B4", "192 operations", "408 in Table 4: 192 and four products with gJ⁻¹gᵀ"],
     ["§5.2, example 3", "J = diag(1, 4, 18)", "J⁻¹ = diag(1, 4, 18)"],
     ["§5.2, example 3", "Δt = 0.0004", "Δt = 0.004"],
+    ["§5.2, ccsk", "one step ccskf, one ccskb", "ccskb (321) first"],
     ["§5.3", "diag(1, 4, 18) is symmetric", "asymmetric"],
     ["§5.3", "N = 2^p, p = 1 … 6", "p = 5 … 10 in the second test"],
     ["§5.3", "“the ccsk presents a better behaviour (figure 4)”", "ccskb, the ordering 321, does"],
