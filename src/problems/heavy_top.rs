@@ -58,8 +58,8 @@ const ROUNDING: f64 = 64.0 * f64::EPSILON;
 enum Integral<S> {
     None,
     Euler,
-    /// The axis.
-    Lagrange(usize),
+    /// The axis, and the sign of w along it.
+    Lagrange(usize, f64),
     /// The unit vector along w, where all moments are equal: Lagrange's top about w.
     Sphere([S; 3]),
     /// The axis k, and w/C along the axes k + 1 and k + 2.
@@ -83,7 +83,7 @@ impl<S: Real> HeavyTop<S> {
             let [[c, a, b], [z, x, y]] =
                 [inertia, weight].map(|all| [0, 1, 2].map(|i| all[(k + i) % 3]));
             if equal(a, b) && is_none(x) && is_none(y) {
-                Some(Integral::Lagrange(k))
+                Some(Integral::Lagrange(k, z.signum()))
             } else if equal(a, b) && equal(a, 2.0 * c) && is_none(z) {
                 Some(Integral::Kovalevskaya(k, [x, y].map(|w| S::lit(w / c))))
             } else {
@@ -135,11 +135,14 @@ impl<S: Real> HeavyTop<S> {
     }
 
     /// The fourth integral of Euler's, Lagrange's or Kovalevskaya's top. `None` for other tops.
+    ///
+    /// Euler's is |μ|², Lagrange's the momentum along w, and Kovalevskaya's |(ω_i + iω_j)² − (c + id)(γ_i + iγ_j)|², where
+    /// (c, d) is w/C along the axes i and j of its equator.
     pub fn fourth_integral(&self, (mu, gamma): &(Vector3<S>, Vector3<S>)) -> Option<S> {
         match self.integral {
             Integral::None => None,
             Integral::Euler => Some(dot(mu, mu)),
-            Integral::Lagrange(k) => Some(mu[k]),
+            Integral::Lagrange(k, sign) => Some(S::lit(sign) * mu[k]),
             Integral::Sphere(e) => Some(dot(&Vector3::from(e), mu)),
             Integral::Kovalevskaya(k, [c, d]) => {
                 let (w, [i, j]) = (self.omega(mu), [1, 2].map(|n| (k + n) % 3));
@@ -150,12 +153,26 @@ impl<S: Real> HeavyTop<S> {
         }
     }
 
+    /// The size of the terms of [`fourth_integral`](Self::fourth_integral), which may cancel.
+    pub fn terms_of_fourth_integral(&self, (mu, gamma): &(Vector3<S>, Vector3<S>)) -> S {
+        let squared = dot(mu, mu);
+        match self.integral {
+            Integral::None | Integral::Euler => squared,
+            Integral::Lagrange(..) | Integral::Sphere(_) => squared.sqrt(),
+            Integral::Kovalevskaya(_, [c, d]) => {
+                let w = self.omega(mu);
+                let terms = dot(&w, &w) + ((c * c + d * d) * dot(gamma, gamma)).sqrt();
+                terms * terms
+            }
+        }
+    }
+
     /// The degree of [`fourth_integral`](Self::fourth_integral) as a polynomial in (μ, γ). A top without one has 0.
     pub fn degree_of_fourth_integral(&self) -> u32 {
         match self.integral {
             Integral::None => 0,
             Integral::Euler => 2,
-            Integral::Lagrange(_) | Integral::Sphere(_) => 1,
+            Integral::Lagrange(..) | Integral::Sphere(_) => 1,
             Integral::Kovalevskaya(..) => 4,
         }
     }
@@ -193,12 +210,13 @@ impl<S: Real> Hamiltonian<Se3<S>> for HeavyTop<S> {
         let fourth = match self.integral {
             Integral::None => None,
             Integral::Euler => Some("|μ|²"),
-            Integral::Lagrange(k) => Some(["μ₁", "μ₂", "μ₃"][k]),
+            Integral::Lagrange(k, sign) if sign > 0.0 => Some(["μ₁", "μ₂", "μ₃"][k]),
+            Integral::Lagrange(k, _) => Some(["-μ₁", "-μ₂", "-μ₃"][k]),
             Integral::Sphere(_) => Some("μ·w/|w|"),
             Integral::Kovalevskaya(..) => Some("Kovalevskaya's integral"),
         };
         let degree = self.degree_of_fourth_integral();
-        let fourth = fourth.map(|name| Invariant::of_the_flow(name, degree));
+        let fourth = fourth.map(|name| Invariant::of_the_flow(name, degree).in_terms());
         casimirs.into_iter().chain(fourth).collect()
     }
     fn further_values(&self, y: &(Vector3<S>, Vector3<S>)) -> Vec<S> {
@@ -207,7 +225,8 @@ impl<S: Real> Hamiltonian<Se3<S>> for HeavyTop<S> {
     fn further_sizes(&self, y: &(Vector3<S>, Vector3<S>)) -> Vec<S> {
         let [gamma2, _] = self.casimirs(y);
         let sizes = [gamma2, (dot(&y.0, &y.0) * gamma2).sqrt()];
-        sizes.into_iter().chain(self.fourth_integral(y).map(S::abs)).collect()
+        let fourth = self.is_integrable().then(|| self.terms_of_fourth_integral(y));
+        sizes.into_iter().chain(fourth).collect()
     }
 }
 

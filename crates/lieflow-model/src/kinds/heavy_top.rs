@@ -326,7 +326,8 @@ impl<R: TopCoordinates> System for Top<R> {
         }),
         Q::number(
             "integral",
-            "the fourth integral of Euler's, Lagrange's and Kovalevskaya's top; others have none",
+            "the fourth integral of Euler's, Lagrange's (the momentum along the weight) and Kovalevskaya's top; others \
+             have none",
             |top, _, y| {
                 let integral = top.spec.top.fourth_integral(&Top::<R>::momentum_and_vertical(y));
                 integral.unwrap_or(f64::NAN)
@@ -337,6 +338,9 @@ impl<R: TopCoordinates> System for Top<R> {
             let is_polynomial = R::LAWS[0].degree > 0;
             let degree = if is_polynomial { top.spec.top.degree_of_fourth_integral() } else { 0 };
             Some(Law::by_the_flow(degree))
+        })
+        .in_terms(|top, y| {
+            top.spec.top.terms_of_fourth_integral(&Top::<R>::momentum_and_vertical(y))
         })
         .missing_where(Self::without_integral),
         angle(),

@@ -45,6 +45,32 @@ fn a_vertical_beside_an_attitude_is_that_of_the_attitude() {
     assert_eq!(nutation("[\"nutation\", \"axis\"]"), 0.0);
 }
 
+/// The fourth integral of Lagrange's top is the momentum along the weight, however its body axes are turned.
+#[test]
+fn the_integral_of_lagrange_is_along_the_weight() {
+    let weight = |tensor: &str, weight: &str, momentum: &str| {
+        let top = format!(
+            "kind = \"heavy-top\"\ninertia = {tensor}\nweight = {weight}\nmomentum_body = {momentum}\nvertical = [0, 0.6, 0.8]"
+        );
+        last(&scene(&top, METHOD, TIME, "[\"integral\"]"))[0]
+    };
+    let sign = |w: &str| weight("[2, 2, 0.7]", w, "[0.5, 0.2, 1.5]");
+    assert!((sign("[0, 0, 1]") - 1.5).abs() < 1e-12 && (sign("[0, 0, -1]") + 1.5).abs() < 1e-12);
+    for degrees in [0.0_f64, 1.0, 30.0, 89.0, 91.0, 150.0, 200.0, -1e-7] {
+        let (s, c) = degrees.to_radians().sin_cos();
+        // J = A 𝟙 + (C − A) a aᵀ for the axis a.
+        let axis = [s, 0.0, c];
+        let tensor: Vec<[f64; 3]> = (0..3)
+            .map(|i| [0, 1, 2].map(|j| 2.0 * f64::from(u8::from(i == j)) - 1.3 * axis[i] * axis[j]))
+            .collect();
+        let momentum = [0.5 * c + 1.5 * s, 0.2, 1.5 * c - 0.5 * s];
+        let [tensor, axis, momentum] =
+            [format!("{tensor:?}"), format!("{axis:?}"), format!("{momentum:?}")];
+        let integral = weight(&tensor, &axis, &momentum);
+        assert!((integral - 1.5).abs() < 1e-12, "{degrees}: {integral}");
+    }
+}
+
 /// A method that leaves the group ends with attitudes that are off it. Each has the quaternion of its polar factor.
 #[test]
 fn attitudes_off_the_group_have_a_quaternion() {
