@@ -307,6 +307,13 @@ fn a_span_with_too_many_knots_is_refused() {
         assert!(message.contains("more than 1000000 times in t_span"), "{message}");
     }
     folder.lieflow(&[&long[..], &["time.dt=1e6"]].concat()).ok();
+    // A span without an end has magnets without an end.
+    let events = "title = \"x\"\n[problem]\nkind = \"beam-line\"\nelements = [{ kind = \"quadrupole\", length = 0.5, k = 1 }, \
+                  { kind = \"drift\", length = 1 }]\nparticle = [1e-3, 0, 0, 0]\n[time]\nt_span = [0, inf]\n[[events]]\n\
+                  name = \"axis\"\nwhen = \"x\"\nstop_after = 1\n";
+    folder.write("endless.toml", events);
+    let message = folder.lieflow(&["run", "endless.toml"]).refused();
+    assert!(message.contains("expected a span with an end"), "{message}");
 }
 
 #[test]

@@ -221,19 +221,16 @@ impl System for BeamLine {
     fn modelled(&self) -> String {
         "transfer map in Sp(4)".into()
     }
-    /// Where elements end; none over a span without an end.
+    /// Where elements end; over a span without an end one more than a run may have.
     fn knots(&self, [s0, s1]: [f64; 2]) -> Option<Stops> {
         let (from, to, length) = (s0.min(s1), s0.max(s1), self.cell_length());
-        let cells = if to - from < f64::INFINITY {
-            (from / length).floor()..(to / length)
-        } else {
-            0.0..0.0
-        };
+        let first = if from.is_finite() { from / length } else { to / length - KNOTS_MAX as f64 };
+        let cells = first.floor()..(to / length);
         let starts = (0..=KNOTS_MAX as u32)
             .map(|i| cells.start + f64::from(i))
             .take_while(|cell| *cell < cells.end);
         let ends = starts.flat_map(|cell| self.ends_of(cell)).map(|(end, _)| end);
-        // One more than a scene may have, which refuses it.
+        // One more than a run may have, which is refused.
         let counts = |s: &f64| (from < *s && *s < to) || *s == s1;
         Some(ends.filter(counts).take(KNOTS_MAX + 1).collect::<Vec<_>>().into())
     }

@@ -219,9 +219,11 @@ impl Scene {
             units,
         };
         if scene.stops(scene.grid.t_span()).len() > KNOTS_MAX {
+            let has_end = scene.grid.t_span()[1].is_finite();
+            let span = if has_end { "a shorter span" } else { "a span with an end" };
             let message = format!(
-                "a step has to end at more than {KNOTS_MAX} times in t_span, expected a shorter span \
-                 or `at_knots = false`"
+                "a step has to end at more than {KNOTS_MAX} times in t_span, expected {span}, or `at_knots = false`, with \
+                 which steps pass over them"
             );
             return Err(document.refusal("time", Refusal::at("t_span", message)));
         }
