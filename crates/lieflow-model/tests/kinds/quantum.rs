@@ -40,6 +40,29 @@ fn landau_zener() {
     assert!((re * re + im * im - p).abs() < 1e-5, "{} {p}", re * re + im * im);
 }
 
+/// A pulse in resonance turns the state by its area, wherever it is and however short beside the span: steps by error see it.
+#[test]
+fn pulses_are_not_passed_over() {
+    for width in [0.4, 1.6, 3.0, 6.0] {
+        for k in 0..8 {
+            let centre = 40.0 + 10.37 * f64::from(k);
+            let problem = format!(
+                "kind = \"schrodinger\"\nenergies = [0, 0]\npulse = [{centre}, {width}]\namplitudes = [1, 0]\n\
+                 coupling = [[0, \"0.9/{width}\"], [\"0.9/{width}\", 0]]"
+            );
+            let method = "name = \"rkmk\"\ntableau = \"dopri5\"";
+            let end = last(&scene(
+                &problem,
+                method,
+                "t_span = [0, 150]\nrtol = 1e-6",
+                "[\"populations\"]",
+            ));
+            let exact = (0.9 * std::f64::consts::PI.sqrt()).sin().powi(2);
+            assert!((end[1] - exact).abs() < 1e-3, "{centre} {width}: {end:?} {exact}");
+        }
+    }
+}
+
 /// With sine and cosine pulses the transfer is ((W₀² + r² cos WT)/W²)².
 #[test]
 fn stirap() {

@@ -87,8 +87,9 @@ struct Drive {
     pulse: Option<[f64; 2]>,
 }
 
-/// A width that is a smaller part of the span is one of a short pulse.
-const SHORT: f64 = 0.01;
+/// A width that is a smaller part of the span is one of a short pulse. Methods of order 5 have passed over pulses of a
+/// twenty-fifth.
+const SHORT: f64 = 0.1;
 /// Where steps end within a short pulse, in widths from its centre. Beyond, the pulse is rounding.
 const PULSE: [f64; 7] = [-6.0, -4.0, -2.0, 0.0, 2.0, 4.0, 6.0];
 
