@@ -12,7 +12,10 @@
 //! | abs, sign | sign u u′, 0 |
 //! | atan2(u, v) | (v u′ − u v′)/(u² + v²) |
 //! | samples | the polynomial's derivative; at a knot that of the one after it |
-//! | min, max | ½(u′ + v′) ∓ ½ sign(u − v)(u′ − v′) |
+//! | min, max | ½(1 ∓ sign(u − v))u′ + ½(1 ± sign(u − v))v′ |
+//!
+//! Where the slope u′ of an argument is 0, so is that of the function, also if f′(u) is infinite: `sqrt(max(x, 0))` has the
+//! slope 0 for x < 0.
 
 use super::functions::{Function, Operator};
 use super::tape::{Builder, Op, TIME, Tape};
@@ -36,13 +39,13 @@ pub(super) fn derivative(tape: &Tape, variable: usize) -> Option<Tape> {
             }
             Op::Apply(Function::Neg, x) => slopes[x].map(|du| build.apply(Function::Neg, du)),
             Op::Apply(function, x) => match (slopes[x], build.of_function(function, x, at)) {
-                (Some(du), Some(outer)) => Some(build.times(outer, du)),
+                (Some(du), Some(outer)) => Some(build.chain(outer, du)),
                 _ => None,
             },
             Op::Power(x, n) => slopes[x].map(|du| {
                 let (factor, power) = (build.number(f64::from(n)), build.power(x, n - 1));
                 let outer = build.times(factor, power);
-                build.times(outer, du)
+                build.chain(outer, du)
             }),
             Op::Combine(operator, x, y) => {
                 build.of_operator(operator, (x, slopes[x]), (y, slopes[y]), at)
@@ -60,6 +63,10 @@ type Part = (usize, Option<usize>);
 impl Builder {
     fn times(&mut self, x: usize, y: usize) -> usize {
         self.combine(Operator::Mul, x, y)
+    }
+    /// The slope of a function times that of its argument.
+    fn chain(&mut self, outer: usize, inner: usize) -> usize {
+        self.combine(Operator::Chain, outer, inner)
     }
     /// x + y.
     fn plus(&mut self, x: Option<usize>, y: Option<usize>) -> Option<usize> {
@@ -133,6 +140,12 @@ impl Builder {
                     (du.map(|du| self.times(du, v)), dv.map(|dv| self.times(u, dv)));
                 self.plus(first, second)
             }
+            // As a product.
+            Operator::Chain => {
+                let (first, second) =
+                    (du.map(|du| self.chain(du, v)), dv.map(|dv| self.chain(u, dv)));
+                self.plus(first, second)
+            }
             Operator::Div => {
                 let moved = dv.map(|dv| self.times(value, dv));
                 let above = self.minus(du, moved)?;
@@ -144,12 +157,12 @@ impl Builder {
                     let less = self.combine(Operator::Sub, v, one);
                     let power = self.combine(Operator::Pow, u, less);
                     let outer = self.times(v, power);
-                    self.times(outer, du)
+                    self.chain(outer, du)
                 });
                 let exponent = dv.map(|dv| {
                     let ln = self.apply(Function::Ln, u);
-                    let outer = self.times(value, ln);
-                    self.times(outer, dv)
+                    let outer = self.chain(ln, value);
+                    self.chain(outer, dv)
                 });
                 self.plus(base, exponent)
             }
@@ -162,14 +175,19 @@ impl Builder {
                 Some(self.combine(Operator::Div, above, below))
             }
             Operator::Min | Operator::Max => {
-                let (sum, apart) = (self.plus(du, dv)?, self.minus(du, dv)?);
                 let difference = self.combine(Operator::Sub, u, v);
                 let sign = self.apply(Function::Sign, difference);
-                let turned = self.times(sign, apart);
-                let half = self.number(0.5);
-                let joined = if operator == Operator::Min { Operator::Sub } else { Operator::Add };
-                let twice = self.combine(joined, sum, turned);
-                Some(self.times(half, twice))
+                let (half, one) = (self.number(0.5), self.number(1.0));
+                let mut part = |slope: Option<usize>, with: Operator| {
+                    let twice = self.combine(with, one, sign);
+                    let weight = self.times(half, twice);
+                    slope.map(|slope| self.chain(slope, weight))
+                };
+                let (greater, less) = match operator {
+                    Operator::Max => (part(du, Operator::Add), part(dv, Operator::Sub)),
+                    _ => (part(du, Operator::Sub), part(dv, Operator::Add)),
+                };
+                self.plus(greater, less)
             }
         }
     }

@@ -36,6 +36,8 @@ pub(super) enum Operator {
     Atan2,
     Min,
     Max,
+    /// The product of two slopes: 0 where the second is 0, also if the first is infinite.
+    Chain,
 }
 
 /// A function of vectors and matrices.
@@ -176,6 +178,13 @@ impl Operator {
             Operator::Add => x + y,
             Operator::Sub => x - y,
             Operator::Mul => x * y,
+            Operator::Chain => {
+                if y == 0.0 {
+                    0.0
+                } else {
+                    x * y
+                }
+            }
             Operator::Div => x / y,
             Operator::Pow => x.powf(y),
             Operator::Atan2 => x.atan2(y),
@@ -189,7 +198,7 @@ impl Operator {
     pub(super) fn cost(self) -> Ops {
         match self {
             Operator::Add | Operator::Sub => Ops::adds(1),
-            Operator::Mul => Ops::muls(1),
+            Operator::Mul | Operator::Chain => Ops::muls(1),
             Operator::Div => Ops::divs(1),
             Operator::Pow => Ops::trigs(2) + Ops::muls(1), // exp(y ln x)
             Operator::Atan2 => Ops::trigs(1) + Ops::divs(1),

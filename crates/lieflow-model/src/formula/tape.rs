@@ -173,9 +173,9 @@ impl Builder {
                 self.power(x, n as i32)
             }
             (_, Some(a), Some(b)) => self.number(operator.value(a, b)),
-            (Operator::Mul | Operator::Div, _, Some(1.0)) => x,
+            (Operator::Mul | Operator::Div | Operator::Chain, _, Some(1.0)) => x,
             (Operator::Add | Operator::Sub, _, Some(0.0)) => x,
-            (Operator::Mul, Some(1.0), _) | (Operator::Add, Some(0.0), _) => y,
+            (Operator::Mul | Operator::Chain, Some(1.0), _) | (Operator::Add, Some(0.0), _) => y,
             (Operator::Div, None, Some(divisor)) => match self.half_of(x) {
                 Some(half) if (divisor / 2.0).is_normal() => {
                     let divisor = self.number(divisor / 2.0);
