@@ -141,6 +141,11 @@ impl Formula {
         self.tape.uses(variable)
     }
 
+    /// Other names, the first of them `t`, and the columns of the samples that this formula may name.
+    pub fn add_samples(&self, names: Names) -> Names {
+        names.with_table(self.table.clone())
+    }
+
     /// The samples whose columns it may name.
     pub fn samples(&self) -> Option<&Samples> {
         self.table.as_ref().map(|table| &table.samples)

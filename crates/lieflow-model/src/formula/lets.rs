@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use super::expression::Formula;
-use super::names::{Entry, Names, continues_name, without_digits};
+use super::names::{Entry, Names, continues_name, entry_name, without_places};
 use super::text::NamedTexts;
 use crate::reader::{Key, KeyPath, Read, ReadError, Refusal, Shape, Value, read_as_held, seen};
 
@@ -44,7 +44,7 @@ impl Lets {
 
     /// The formula that a name in a text belongs to: that of the name, or of the vector or matrix x by x1 or x12.
     fn of<'a>(&'a self, word: &str) -> Option<&'a str> {
-        let whole = || self.0.get_key_value(without_digits(word));
+        let whole = || self.0.get_key_value(without_places(word));
         let found = self.0.get_key_value(word).or_else(whole)?;
         Some(found.0)
     }
@@ -91,7 +91,7 @@ impl Names {
         lets.names().flat_map(move |name| {
             let of_this = move |entry: &&Entry| lets.of(&entry.name) == Some(name);
             let entries = self.formulas.iter().filter(of_this);
-            entries.map(|Entry { name, key, text, tape }| {
+            entries.map(|Entry { name, key, text, tape, .. }| {
                 (
                     lets.of(name).unwrap_or(name),
                     name.clone(),
@@ -162,12 +162,13 @@ impl<'a> LetReader<'a> {
             let name = match (rows, columns) {
                 (1, 1) => name.to_owned(),
                 (_, 1) => format!("{name}{}", i + 1),
-                _ => format!("{name}{}{}", i / columns + 1, i % columns + 1),
+                _ => entry_name(name, [rows, columns], [i / columns + 1, i % columns + 1]),
             };
             if self.refuses_taken {
                 names.check(&place, &name)?;
             }
-            let entry = Entry { name, key, text: text.into(), tape };
+            let within = (rows * columns > 1).then(|| place.clone());
+            let entry = Entry { name, within, key, text: text.into(), tape };
             Arc::make_mut(&mut names.formulas).push(entry);
         }
         Ok(())

@@ -40,6 +40,7 @@ pub use lets::Lets;
 pub(crate) use lost::NEAR;
 pub use lost::{Lost, Which};
 pub use names::Names;
+pub(crate) use names::entry_name;
 pub(crate) use numbers::{Constants, Instead, of_keys};
 pub use parameters::Parameters;
 pub use parse::DECIMAL_POINT;

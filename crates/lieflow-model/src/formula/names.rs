@@ -43,6 +43,8 @@ struct Variables {
 #[derive(Clone, Debug)]
 pub(super) struct Entry {
     pub(super) name: String,
+    /// The place in the scene of the vector or the matrix that it is in. None of a number.
+    pub(super) within: Option<String>,
     /// The place of its text in the scene.
     pub(super) key: String,
     pub(super) text: String,
@@ -52,13 +54,24 @@ pub(super) struct Entry {
 impl Entry {
     /// Does a word of a formula mean this one, or the vector or the matrix that it is in?
     pub(super) fn belongs_to(&self, word: &str) -> bool {
-        word == self.name || !word.is_empty() && without_digits(word) == without_digits(&self.name)
+        word == self.name || !word.is_empty() && without_places(word) == without_places(&self.name)
     }
 }
 
+/// The name of the entry of a matrix: xij, i and j from 1; xi_j where a dimension is above 10, so that no two have one name.
+pub(crate) fn entry_name(matrix: &str, [rows, columns]: [usize; 2], [i, j]: [usize; 2]) -> String {
+    let between = if rows.max(columns) > 10 { "_" } else { "" };
+    format!("{matrix}{i}{between}{j}")
+}
+
 /// The name of a vector or a matrix by that of an entry.
-pub(super) fn without_digits(name: &str) -> &str {
-    name.trim_end_matches(|c: char| c.is_ascii_digit())
+pub(super) fn without_places(name: &str) -> &str {
+    let without_digits = |name: &'_ str| name.trim_end_matches(|c: char| c.is_ascii_digit()).len();
+    let vector = &name[..without_digits(name)];
+    match vector.strip_suffix('_') {
+        Some(row) if without_digits(row) < row.len() => &row[..without_digits(row)],
+        _ => vector,
+    }
 }
 
 /// The meaning of a name.
@@ -67,7 +80,28 @@ pub(super) enum Meaning<'a> {
     Variable(usize),
     Sample(usize),
     Number(f64),
-    Formula(&'a Tape),
+    Formula(&'a Entry),
+}
+
+/// What a name is stated by. The numbers of a vector are stated together.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Origin<'a> {
+    Variables,
+    Samples,
+    Constants,
+    /// Formulas of one number each, or the formula of a vector or a matrix at this place in the scene.
+    Formulas(Option<&'a str>),
+}
+
+impl<'a> Meaning<'a> {
+    fn origin(&self) -> Origin<'a> {
+        match *self {
+            Meaning::Variable(_) => Origin::Variables,
+            Meaning::Sample(_) => Origin::Samples,
+            Meaning::Number(_) => Origin::Constants,
+            Meaning::Formula(entry) => Origin::Formulas(entry.within.as_deref()),
+        }
+    }
 }
 
 impl Names {
@@ -150,6 +184,11 @@ impl Names {
         Ok(self)
     }
 
+    /// These names, the first of them `t`, and the columns of this table. A variable hides a column of the same name.
+    pub(super) fn with_table(self, table: Option<Arc<Table>>) -> Names {
+        Names { table: table.or(self.table), ..self }
+    }
+
     /// Is it the name of a named formula, or of an entry of one?
     pub fn is_formula(&self, name: &str) -> bool {
         matches!(self.meaning(name), Some(Meaning::Formula(_))) || self.is_unusable(name)
@@ -163,7 +202,7 @@ impl Names {
     /// Why this named formula, or an entry of it, cannot be used. `None` inside if the mistake is reported already.
     pub(super) fn unusable(&self, word: &str) -> Option<Option<&str>> {
         let of = |wanted: &str| self.unusable.iter().find(|(name, _)| name == wanted);
-        of(word).or_else(|| of(without_digits(word))).map(|(_, why)| why.as_deref())
+        of(word).or_else(|| of(without_places(word))).map(|(_, why)| why.as_deref())
     }
 
     /// These names, where no named formula has a mistake.
@@ -235,7 +274,7 @@ impl Names {
     /// What to do about a name that no formula can use: the variables of a group, or what was probably meant.
     pub(super) fn help_for(&self, name: &str) -> String {
         let group = |name| self.variables.groups.get_key_value(name);
-        match group(name).or_else(|| group(without_digits(name))) {
+        match group(name).or_else(|| group(without_places(name))) {
             Some((group, variables)) => format!("the numbers of {group} are {variables}"),
             None if suggest(name, &self.all()).is_some() => help_for(name, &self.all()),
             None => format!("expected one of {}", in_groups(&self.all())),
@@ -276,7 +315,7 @@ impl Names {
         let has_entries = |ends: [&str; 2]| {
             ends.iter().all(|end| self.meaning(&format!("{name}{end}")).is_some())
         };
-        if has_entries(["1", "2"]) || has_entries(["11", "12"]) {
+        if has_entries(["1", "2"]) || has_entries(["11", "12"]) || has_entries(["1_1", "1_2"]) {
             let message = format!("`{name}` is the name of a vector or a matrix already");
             return Err(Refusal::at(key, message));
         }
@@ -288,7 +327,7 @@ impl Names {
             return None;
         }
         if let Some(entry) = self.formulas.iter().find(|entry| entry.name == name) {
-            return Some(Meaning::Formula(&entry.tape));
+            return Some(Meaning::Formula(entry));
         }
         let variable = self.variables.places.get(name).copied();
         let own = self.constants.iter().map(|(name, x)| (name.as_str(), *x));
@@ -297,6 +336,35 @@ impl Names {
         let column = self.columns().iter().position(|column| column == name);
         let varies = variable.map(Meaning::Variable).or(column.map(Meaning::Sample));
         varies.or_else(|| number().map(|(_, x)| Meaning::Number(x)))
+    }
+
+    /// The names of the numbers of a vector or a matrix, row by row, and the number of its rows: of x1, x2, … by the name x,
+    /// of x11, x12, … or x1_1, x1_2, … by the name x. All are stated together.
+    pub fn numbers_of(&self, name: &str) -> Option<(usize, Vec<String>)> {
+        let origin = |name: &str| self.meaning(name).map(|meaning| meaning.origin());
+        let line = |stem: &str| -> Vec<String> {
+            let first = origin(&format!("{stem}1"));
+            let names = (1..).map(|i| format!("{stem}{i}"));
+            let names = names.take_while(|name| first.is_some() && origin(name) == first);
+            names.collect()
+        };
+        let rows = |between: &str| -> Vec<Vec<String>> {
+            let rows = (1..).map(|i| line(&format!("{name}{i}{between}")));
+            let mut rows: Vec<_> = rows.take_while(|row| row.len() > 1).collect();
+            let first = rows.first().and_then(|row| origin(&row[0]));
+            rows.retain(|row| origin(&row[0]) == first);
+            rows
+        };
+        let vector = ["", "_"].map(|between| line(&format!("{name}{between}")));
+        if let Some(vector) = vector.into_iter().find(|vector| vector.len() > 1) {
+            return Some((vector.len(), vector));
+        }
+        let matrices = ["", "_"].map(rows);
+        let is_matrix = |rows: &Vec<Vec<String>>| {
+            rows.len() > 1 && rows.iter().all(|row| row.len() == rows[0].len())
+        };
+        let rows = matrices.into_iter().find(is_matrix)?;
+        Some((rows.len(), rows.concat()))
     }
 
     /// Every name that stands for a number.

@@ -347,7 +347,9 @@ impl Parser<'_> {
             true => (format!("`{name}` may change with time"), None),
             false => (format!("unknown name `{name}`"), Some(self.names.help_for(&name))),
         };
-        let help = help.into_iter().chain([self.names.where_to_state(&name)]);
+        let unit = "units are left out, but for those of angles".to_string();
+        let unit = (!varies && UNITS.contains(&&*name)).then_some(unit);
+        let help = unit.into_iter().chain(help).chain([self.names.where_to_state(&name)]);
         let help = Some(help.collect::<Vec<_>>().join("; "));
         Err(Mistake { help, varies, ..self.mistake(&message, start) })
     }
@@ -359,24 +361,16 @@ impl Parser<'_> {
         if let Some(number) = self.number_of(name) {
             return Some(Value::number(number));
         }
-        let mut line = |first: &str| -> Vec<usize> {
-            (1..).map_while(|i| self.number_of(&format!("{first}{i}"))).collect()
-        };
-        let vector = line(name);
-        if vector.len() > 1 {
-            return Some(Value { rows: vector.len(), entries: vector });
-        }
-        let rows = (1..10).map(|i| line(&format!("{name}{i}"))).take_while(|row| row.len() > 1);
-        let rows: Vec<_> = rows.collect();
-        let is_matrix = rows.len() > 1 && rows.iter().all(|row| row.len() == rows[0].len());
-        is_matrix.then(|| Value { rows: rows.len(), entries: rows.concat() })
+        let (rows, names) = self.names.numbers_of(name)?;
+        let entries = names.iter().map(|name| self.number_of(name)).collect::<Option<_>>()?;
+        Some(Value { rows, entries })
     }
     fn number_of(&mut self, name: &str) -> Option<usize> {
         Some(match self.names.meaning(name)? {
             Meaning::Variable(index) => self.build.variable(index),
             Meaning::Sample(column) => self.build.sample(column, 0),
             Meaning::Number(x) => self.build.number(x),
-            Meaning::Formula(tape) => self.build.include(tape),
+            Meaning::Formula(entry) => self.build.include(&entry.tape),
         })
     }
     fn call(&mut self, name: &str, start: usize) -> Result<Value, Mistake> {
@@ -399,6 +393,13 @@ impl Parser<'_> {
             Some(_) if self.take(&[',']).is_some() => Some(self.sum()?),
             Some(takes) => return Err(self.expected(&format!("`,`: {name} takes {takes}"))),
         };
+        if self.peek() == Some(',') {
+            let mistake = self.expected_operator("`)`");
+            let takes = format!("{name} takes {}", called.takes());
+            let comma = mistake.help.clone().filter(|_| second.is_none());
+            let help = [Some(takes), comma].into_iter().flatten().collect::<Vec<_>>().join("; ");
+            return Err(Mistake { help: Some(help), ..mistake });
+        }
         self.close()?;
         first.call(called, second.as_ref(), &mut self.build).map_err(|found| {
             let message = format!("{name} of {found}, expected {}", called.takes());

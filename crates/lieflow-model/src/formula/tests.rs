@@ -240,6 +240,65 @@ fn vectors_and_matrices_are_their_components() {
     }
 }
 
+/// The numbers of a vector are stated together: a name that continues theirs is no part of it.
+#[test]
+fn a_vector_has_the_numbers_that_are_stated_with_it() {
+    let variables = ["t", "w1", "w2", "w3"];
+    let parameters: Parameters = table("w4 = 10\nb4 = 7\nj31 = 1\nj32 = 1").expect("numbers");
+    let names = parameters.names("variables", variables).expect("names");
+    let rows = (1..=12).map(|i| format!("[{i}, {}]", i * i)).collect::<Vec<_>>().join(", ");
+    let lets = format!(
+        "b = \"[1, 2, 3]\"\nj = [[1, 2], [3, 4]]\nm = \"[{rows}]\"\nn = \"2*m\"\ns1 = \"3\"\ns2 = \"4\""
+    );
+    let lets: Lets = table(&lets).expect("formulas");
+    let names = names.with_lets("let", &lets).checked().expect("formulas");
+    let at = [0.5, 3.0, 0.0, 4.0];
+    for (text, expected) in [
+        ("norm(w)", 5.0),
+        ("dot(b, b)", 14.0),
+        ("dot(transpose(j)*[1, 1], [1, 10])", 64.0),
+        ("dot(m*[1, 1], m*[0, 1])", (1..=12).map(|i| f64::from((i + i * i) * i * i)).sum()),
+        ("m12_2 + m1_2 + n11_1 + dot(n2, [1, 1])", 144.0 + 1.0 + 22.0 + 12.0),
+        ("norm(s)", 5.0),
+    ] {
+        let f = Formula::read("f", text, &names).unwrap_or_else(|e| panic!("{text}: {e:?}"));
+        assert_eq!(f.value(&at), expected, "{text}");
+    }
+    // Also where the names come one after the other.
+    let more: Lets =
+        table("c = \"[1, 2]\"\nc3 = \"5\"\nd = \"norm(c)\"\ne1 = \"c\"").expect("formulas");
+    let names = names.with_lets("more", &more).checked().expect("formulas");
+    for text in ["dot(c, c)", "d^2", "dot(e1, e1)"] {
+        let f = Formula::read("f", text, &names).unwrap_or_else(|e| panic!("{text}: {e:?}"));
+        assert!((f.value(&at) - 5.0).abs() < 1e-15, "{text}");
+    }
+}
+
+/// Where the argument of a function is constant, so is the function, also if its slope there is infinite.
+#[test]
+fn slopes_of_clamped_formulas_are_zero() {
+    for (text, at, slope) in [
+        ("1 - sqrt(max(x, 0))", -0.5, 0.0),
+        ("max(x, 0)^0.5", -0.5, 0.0),
+        ("sqrt(max(x, 0))", 0.25, 1.0),
+        ("asin(min(x, 1))", 2.0, 0.0),
+        ("acos(max(-1, min(1, x)))", -3.0, 0.0),
+        ("sqrt(1 - min(x, 1)^2)", 1.5, 0.0),
+        ("(x^2)^0.75", 0.0, 0.0),
+        ("0^x", 2.0, 0.0),
+        ("max(1, sqrt(x))", 0.0, 0.0),
+        ("min(sqrt(x), 1)", 4.0, 0.0),
+        ("min(sqrt(x), 1)", 0.25, 1.0),
+        ("max(x, y)", 0.5, 0.5),
+    ] {
+        let slope_of = read(text).unwrap().derivative(0).unwrap();
+        assert_eq!(slope_of.value(&[at, 0.5, 0.0]), slope, "{text} at {at}");
+    }
+    // Where the argument moves, the slope is infinite.
+    let root = read("sqrt(x)").unwrap().derivative(0).unwrap();
+    assert_eq!(root.value(&[0.0; 3]), f64::INFINITY);
+}
+
 #[test]
 fn what_is_wrong_is_said_with_its_place() {
     for (text, message, help) in [
@@ -274,7 +333,11 @@ fn what_is_wrong_is_said_with_its_place() {
         ("x(2)", "found `(`, expected an operator or the end at character 2", Some("2*x")),
         ("sin x", "found `x`, expected `(` after sin at character 5", None),
         ("min(x)", "found `)`, expected `,`: min takes two numbers at character 6", None),
-        ("sin(x, y)", "found `,`, expected an operator or `)` at character 6", None),
+        (
+            "sin(x, y)",
+            "found `,`, expected an operator or `)` at character 6",
+            Some("sin takes a number"),
+        ),
         ("1e999", "the number 1e999 is out of range at character 1", None),
         ("1.2.3", "`1.2.3` is not a number at character 1", None),
         (

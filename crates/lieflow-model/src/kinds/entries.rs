@@ -8,7 +8,7 @@ use lieflow_runs::schema::{Law, Scale};
 use lieflow_runs::spaces::OnMatrices;
 
 use super::prelude::*;
-use crate::problem::entry_column;
+use crate::formula::entry_name;
 
 /// The asymmetry that the rounding of written entries explains, relative to the largest entry.
 pub(super) const ROUNDING: f64 = 64.0 * f64::EPSILON;
@@ -127,9 +127,18 @@ pub(super) fn numbered(letter: &str, n: usize) -> Vec<String> {
     (1..=n).map(|i| format!("{letter}{i}")).collect()
 }
 
+/// The columns xij of entries of an n×n matrix at these places, from 0.
+pub(super) fn columns_at(
+    letter: &str,
+    n: usize,
+    places: impl Iterator<Item = (usize, usize)>,
+) -> Vec<String> {
+    places.map(|(i, j)| entry_name(letter, [n, n], [i + 1, j + 1])).collect()
+}
+
 /// The columns x11, …, xnn, on and above the diagonal, row by row.
 pub(super) fn upper_columns(letter: &str, n: usize) -> Vec<String> {
-    (1..=n).flat_map(|i| (i..=n).map(move |j| entry_column(letter, [n, n], [i, j]))).collect()
+    columns_at(letter, n, (0..n).flat_map(|i| (i..n).map(move |j| (i, j))))
 }
 
 /// The entries, row by row.

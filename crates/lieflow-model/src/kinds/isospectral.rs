@@ -6,7 +6,8 @@ use lieflow::problems::{IsospectralFlow, toda_lattice};
 use lieflow_runs::spaces::{MatrixAction, OnMatrices};
 
 use super::entries::{
-    ROUNDING, check_symmetric, diagonal, eigenvalues, numbered, symmetric, upper, upper_columns,
+    ROUNDING, check_symmetric, columns_at, diagonal, eigenvalues, numbered, symmetric, upper,
+    upper_columns,
 };
 use super::on_m;
 use super::prelude::*;
@@ -142,7 +143,10 @@ impl System for Isospectral {
         Q::numbers("diagonal", &["l11", "…", "lnn"], "the diagonal", |_, _, l, row| {
             row.extend(diagonal(l));
         })
-        .with_columns(|flow| (1..=flow.matrix.nrows()).map(|i| format!("l{i}{i}")).collect()),
+        .with_columns(|flow| {
+            let n = flow.matrix.nrows();
+            columns_at("l", n, (0..n).map(|i| (i, i)))
+        }),
         Q::number("off_diagonal", "Frobenius norm of what is off the diagonal", |_, _, l| {
             let off = |i: usize, j: usize| if i == j { 0.0 } else { l[(i, j)] };
             norm(Mat::from_fn(l.nrows(), l.nrows(), off).as_ref())

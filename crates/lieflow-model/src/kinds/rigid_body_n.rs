@@ -3,7 +3,7 @@
 //! ṁ = \[m, Ω\], Ω_ij = m_ij/J_ij. f(m) = −Ω; Λ(g, m) = g m gᵀ. Invariants: tr mᵏ for even k (the
 //! action), the energy, and for J_ij = λ_i + λ_j Manakov's further integrals.
 
-use super::entries::{above_diagonal, antisymmetric};
+use super::entries::{above_diagonal, antisymmetric, columns_at};
 use super::on_m::check_antisymmetric;
 use super::prelude::*;
 use crate::problem::SERIES;
@@ -113,9 +113,7 @@ impl System for Body {
                 row.extend(above_diagonal(body.n()).map(|(i, j)| 0.5 * (m[(i, j)] - m[(j, i)])));
             },
         )
-        .with_columns(|body| {
-            above_diagonal(body.n()).map(|(i, j)| format!("m{}{}", i + 1, j + 1)).collect()
-        }),
+        .with_columns(|body| columns_at("m", body.n(), above_diagonal(body.n()))),
         Q::number("energy", "kinetic energy", |body, _, m| body.body.energy(m))
             .kept(Law::by_the_flow(2)),
         Q::numbers(

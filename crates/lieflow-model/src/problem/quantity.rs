@@ -5,17 +5,12 @@ use lieflow_runs::schema::{Branch, Component, Dimension, Law, Measure, Numbers, 
 
 use super::kind::{Kept, QuantityInfo};
 use super::system::{PointOf, System};
+use crate::formula::entry_name;
 use crate::reader::Refusal;
-
-/// The column xij of a matrix, i and j from 1; xi_j where a dimension is above 10, so that no two have one name.
-pub(crate) fn entry_column(letter: &str, [n, k]: [usize; 2], [i, j]: [usize; 2]) -> String {
-    let between = if n.max(k) > 10 { "_" } else { "" };
-    format!("{letter}{i}{between}{j}")
-}
 
 /// The columns of all entries, row by row.
 pub(crate) fn row_columns(letter: &str, n: usize, k: usize) -> Vec<String> {
-    (1..=n).flat_map(|i| (1..=k).map(move |j| entry_column(letter, [n, k], [i, j]))).collect()
+    (1..=n).flat_map(|i| (1..=k).map(move |j| entry_name(letter, [n, k], [i, j]))).collect()
 }
 
 /// The columns of a quantity.

@@ -172,6 +172,10 @@ impl Columns {
             names.add_group(of_quantity[0].quantity, listed.join(", "));
         }
         // A name means in all formulas of a scene what it means in its problem.
+        let names = match problem.formula() {
+            Some(formula) => formula.add_samples(names),
+            None => names,
+        };
         let names = names.with_usable_lets("let", seen(lets)?);
         Ok(Columns { columns, names, variables })
     }

@@ -79,6 +79,7 @@ fn read(mut keys: Keys) -> Result<Forms, ReadError> {
         let (coordinates, taken) = names_of(&keys, &spaces, seen(&formulas.parameters)?)?;
         let all = core::iter::once(TIME).chain(coordinates.iter().map(String::as_str));
         let of_fields = formulas.names("parts", all, samples)?;
+        check_names(&keys, &spaces, &of_fields)?;
         let of_invariants = seen(&formulas.parameters)?.names("parts", &coordinates)?;
         let of_invariants = of_invariants.with_usable_lets("let", seen(&formulas.r#let)?);
         Ok((taken, of_fields, of_invariants))
@@ -249,6 +250,23 @@ fn names_of(
         coordinates.extend(own);
     }
     Ok((coordinates, taken))
+}
+
+/// Checks that the name of each part means its own coordinates, and not those of another part, too.
+fn check_names(keys: &[PartKeys], spaces: &[&Space], names: &Names) -> Result<(), ReadError> {
+    for (i, (PartKeys { name, .. }, space)) in keys.iter().zip(spaces).enumerate() {
+        let name = seen(name)?;
+        let own = space.coordinates(name);
+        let numbers = names.numbers_of(name).map(|(_, numbers)| numbers).unwrap_or_default();
+        let other = numbers.iter().find(|number| !own.contains(number));
+        if let Some(other) = other.filter(|_| own.len() > 1) {
+            let message = format!(
+                "part `{name}`: in a formula `{name}` would have the number `{other}` of another part: rename one of them"
+            );
+            return Err(Refusal::at(of_part(i, "name"), message).into());
+        }
+    }
+    Ok(())
 }
 
 impl Composed {

@@ -6,7 +6,9 @@ use lieflow::problems::{density_matrix, populations_of, von_neumann};
 use lieflow::solve::Stops;
 use lieflow_runs::spaces::{MatrixAction, OnMatrices};
 
-use super::super::entries::{ROUNDING, eigenvalues, numbered, symmetric, upper_columns};
+use super::super::entries::{
+    ROUNDING, columns_at, eigenvalues, numbered, symmetric, upper_columns,
+};
 use super::super::on_m::{OFF_M, check_hermitian, check_least, check_number};
 use super::super::prelude::*;
 use super::{Hamiltonian, INSTEAD, above_diagonal, hamiltonian_keys, imaginary_part, state};
@@ -97,8 +99,7 @@ impl System for Mixture {
         )
         .with_columns(|mixture| {
             let n = mixture.hamiltonian.n;
-            let above = above_diagonal(n).map(|(i, j)| format!("im{}{}", i + 1, j + 1));
-            upper_columns("re", n).into_iter().chain(above).collect()
+            [upper_columns("re", n), columns_at("im", n, above_diagonal(n))].concat()
         })
         .of_numbers(|_| Numbers::Hermitian),
         Q::numbers(
