@@ -11,5 +11,5 @@ pub(super) use crate::problem::{
 pub(super) use crate::reader::values::{List, Real, Reals, Table, Whole};
 pub(super) use crate::reader::{
     Either, Key, KeyPath, ReadError, Refusal, all, amount, at_most_one, exactly_one, given,
-    help_for, read_by_keys, read_with, seen,
+    help_for, one_of, read_by_keys, read_with, seen,
 };

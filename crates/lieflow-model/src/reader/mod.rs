@@ -13,7 +13,7 @@ pub(crate) use read::{
     read_with, seen, take,
 };
 pub(crate) use refusal::amount;
-pub use refusal::{Either, KeyPath, Refusal, at_most_one, exactly_one};
+pub use refusal::{Either, KeyPath, Refusal, at_most_one, exactly_one, one_of};
 pub use suggest::{help_for, is_known, suggest};
 pub use tree::{Mistakes, Tree};
 pub(crate) use value::keys_of;

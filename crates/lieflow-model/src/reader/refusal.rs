@@ -162,13 +162,25 @@ pub enum Either<A, B> {
 pub fn at_most_one<'a>(
     keys: impl IntoIterator<Item = (&'a str, bool)>,
 ) -> Result<Option<&'a str>, Refusal> {
-    let mut given = keys.into_iter().filter(|(_, given)| *given).map(|(key, _)| key);
-    match (given.next(), given.next()) {
-        (Some(a), Some(b)) => {
-            Err(Refusal::at(b, format!("both `{a}` and `{b}`, expected exactly one of them")))
-        }
-        (first, _) => Ok(first),
-    }
+    one_of(keys, "at most one")
+}
+
+/// The one of these keys that is there, where one is. `expected` says how many of them a user should give.
+///
+/// # Errors
+/// A refusal of the second one that is there, which names all.
+pub fn one_of<'a>(
+    keys: impl IntoIterator<Item = (&'a str, bool)>,
+    expected: &str,
+) -> Result<Option<&'a str>, Refusal> {
+    let given = keys.into_iter().filter(|(_, given)| *given).map(|(key, _)| key);
+    let given: Vec<_> = given.collect();
+    let all = match &given[..] {
+        [] | [_] => return Ok(given.first().copied()),
+        [a, b] => format!("both `{a}` and `{b}`"),
+        [before @ .., last] => format!("`{}` and `{last}`", before.join("`, `")),
+    };
+    Err(Refusal::at(given[1], format!("{all}, expected {expected} of them")))
 }
 
 /// The one of two keys that is there.
@@ -179,7 +191,7 @@ pub fn exactly_one<A, B>(
     (a, first): (&str, Option<A>),
     (b, second): (&str, Option<B>),
 ) -> Result<Either<A, B>, Refusal> {
-    at_most_one([(a, first.is_some()), (b, second.is_some())])?;
+    one_of([(a, first.is_some()), (b, second.is_some())], "exactly one")?;
     match (first, second) {
         (Some(value), _) => Ok(Either::First(value)),
         (None, Some(value)) => Ok(Either::Second(value)),

@@ -52,6 +52,9 @@ fn number(value: &Value) -> Result<f64, ReadError> {
     number.ok_or_else(|| ReadError::of(value, OUT_OF_RANGE))
 }
 
+/// Below it a number can be each whole number.
+const WHOLE_MAX: f64 = (1u64 << f64::MANTISSA_DIGITS) as f64;
+
 /// A whole number from `MIN`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Whole<const MIN: u64>(pub u64);
@@ -61,8 +64,15 @@ impl<const MIN: u64> Read for Whole<MIN> {
 
     fn read(value: &Value) -> Result<Self, ReadError> {
         let expected = || ReadError::expected(value, format!("a whole number, at least {MIN}"));
-        let Is::Whole(n) = &value.is else { return Err(expected()) };
-        let n = n.value.and_then(|n| i64::try_from(n).ok());
+        let n = match &value.is {
+            Is::Whole(n) => n.value.and_then(|n| i64::try_from(n).ok()),
+            // 1e6, where a number has each whole number.
+            Is::Number(x) => match x.value.filter(|x| x.fract() == 0.0 && x.abs() < WHOLE_MAX) {
+                Some(x) => Some(x as i64),
+                None => return Err(expected()),
+            },
+            _ => return Err(expected()),
+        };
         let n = n.ok_or_else(|| ReadError::of(value, OUT_OF_RANGE))?;
         let n = u64::try_from(n).ok().filter(|n| *n >= MIN);
         n.map(Whole).ok_or_else(expected)

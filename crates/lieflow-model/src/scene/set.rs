@@ -14,7 +14,7 @@ enum Step<'a> {
 }
 
 /// The text of a scene with these settings, in their order. A setting is `key=value`: the key with its section, as in
-/// `time.dt`, and a place in a list in brackets, from 1; the value in TOML. Nothing after the `=` takes the key away.
+/// `time.dt`, and places in lists in brackets, from 1, `[3]` or `[1, 3]`; the value in TOML. Nothing after the `=` takes the key away.
 ///
 /// # Errors
 /// A setting that is no such text, or that goes into what the scene does not have.
@@ -117,10 +117,12 @@ fn steps(path: &str) -> Result<Vec<Step<'_>>, String> {
         }
         steps.push(Step::Key(key.trim()));
         for place in places.split_inclusive(']') {
-            let number = place.strip_prefix('[').and_then(|place| place.strip_suffix(']'));
-            match number.and_then(|number| number.trim().parse().ok()) {
-                Some(place) if place >= 1 => steps.push(Step::Place(place)),
-                _ => return Err(format!("found `{place}`, expected a place from 1, such as [1]")),
+            let wrong =
+                || format!("found `{place}`, expected a place from 1, such as [1] or [1, 2]");
+            let numbers = place.strip_prefix('[').and_then(|place| place.strip_suffix(']'));
+            for number in numbers.ok_or_else(wrong)?.split(',') {
+                let place = number.trim().parse().ok().filter(|&place| place >= 1);
+                steps.push(Step::Place(place.ok_or_else(wrong)?));
             }
         }
     }

@@ -20,6 +20,37 @@ fn a_long_chain_of_parameters_is_refused() {
     assert!(message.contains("expected at most 256 parameters that need each other"), "{message}");
 }
 
+/// A whole number may be written as a number, and a place in a matrix as two.
+#[test]
+fn whole_numbers_and_places() {
+    let of = |lines: &str| {
+        let text = format!(
+            "[problem]\nkind = \"rigid-body\"\ninertia = [1, 2, 3]\nomega_body = [0, 0, 1]\n[time]\nt_span = [0, 1]\n{lines}\n"
+        );
+        Scene::parse("scene", &text)
+    };
+    assert_eq!(of("steps = 1e3").unwrap().grid, of("steps = 1000").unwrap().grid);
+    for steps in ["2.5", "-1e3", "1e16", "nan"] {
+        let message = of(&format!("steps = {steps}")).unwrap_err().to_string();
+        assert!(message.contains("expected a whole number, at least 1"), "{message}");
+    }
+    let message =
+        of("steps = 10\n[output]\nevery = 1\ncount = 4\ntimes = [1]").unwrap_err().to_string();
+    assert!(
+        message.contains("`every`, `times` and `count`, expected at most one of them"),
+        "{message}"
+    );
+    let entry = |place: &str| {
+        let scene = std::path::Path::new("rotating-drive");
+        Scene::open_with(scene, &[format!("problem.field{place}=\"cos(2*t)\"")])
+    };
+    assert_eq!(entry("[1,3]").unwrap().text, entry("[1][3]").unwrap().text);
+    for place in ["[0, 3]", "[1,]", "[1;3]", "[1"] {
+        let message = entry(place).unwrap_err().to_string();
+        assert!(message.contains("expected a place from 1, such as [1] or [1, 2]"), "{message}");
+    }
+}
+
 /// Each place that takes a number takes a formula: both scenes are the same problem.
 #[test]
 fn formulas_stand_for_numbers_of_every_shape() {

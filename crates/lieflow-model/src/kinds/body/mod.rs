@@ -246,7 +246,7 @@ impl BodyKeys {
             ("omega_space", &self.omega_space, false, true),
             ("momentum_space", &self.momentum_space, true, true),
         ];
-        at_most_one(keys.map(|(key, x, ..)| (key, is_given(x))))?;
+        one_of(keys.map(|(key, x, ..)| (key, is_given(x))), "exactly one")?;
         for (key, x, is_momentum, in_space) in keys {
             if let Some(Reals(x)) = *seen(x)? {
                 return Ok(Rate { key, x, is_momentum, in_space });
@@ -257,11 +257,12 @@ impl BodyKeys {
     }
 
     fn principal(&self) -> Result<Principal, ReadError> {
-        at_most_one([
+        let keys = [
             ("inertia", is_given(&self.inertia)),
             ("inverse_inertia", is_given(&self.inverse_inertia)),
             ("shape", is_given(&self.shape)),
-        ])?;
+        ];
+        one_of(keys, "exactly one")?;
         let (inertia, axes) = match seen(&self.shape)? {
             Some(shape) => (shape.moments()?, None),
             None => self.of_inertia()?,
