@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import pickle
 
 import numpy as np
@@ -66,3 +67,25 @@ def test_caches_are_bounded():
         lf.solve_ivp(body, (0, 0.01), events=f"w2 - {c}", steps=1)
         lf.solve_ivp(field, (0, 0.01), np.eye(3), frame="body", events=f"y11 - {c}", steps=1)
     assert len(body._models) <= 64 and len(field._made) <= 64
+
+
+def test_a_copy_of_an_integrator_has_the_arguments_of_its_start():
+    span, stops, rtol = np.array([0.0, 10.0]), np.array([5.0]), np.array(1e-9)
+
+    def f(t, y):
+        return [1.0, 0, 0] if t < 5 else [0, 0, 30.0]
+
+    system = {"group": "SO(3)", "frame": "body", "rtol": rtol, "stops": stops}
+    of_list, names = [5.0], ["momentum_body"]
+    runs = [
+        lf.Integrator(f, "rkmk dop853", span, np.eye(3), **system),
+        lf.Integrator(BODY, None, span, stops=of_list, quantities=names),
+    ]
+    span[1], stops[0], rtol[...], names[0] = 5.0, 7.0, 1e-3, "energy"
+    of_list.append(12.0)
+    for run in runs:
+        other = copy.copy(run)
+        run.advance_to(10.0)
+        other.advance_to(10.0)
+        assert other.nsteps == run.nsteps and np.array_equal(other.state, run.state) and type(other.y) is type(run.y)
+    assert list(pickle.loads(pickle.dumps(runs[1])).y) == ["momentum_body"]

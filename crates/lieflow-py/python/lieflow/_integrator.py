@@ -62,15 +62,20 @@ class Integrator:
     ) -> None:
         if method is not None:
             name_of("method", method)
-        self._given = (
-            (problem, method, t_span, copy.deepcopy(y0)),
-            {"args": args, "group": group, "action": action, "frame": frame, "linear": linear, "quantities": quantities, **steps},
-        )
         known = ("rtol", "atol", "first_step", "min_step", "max_step", "max_steps", "dt", "steps", "stops")
         for name in steps:
             if name not in known:
                 raise TypeError(f"{name}: not an argument of Integrator, expected one of {', '.join(known)}")
-        span, settings = span_of(t_span), settings_of(**steps, linear=linear)
+        span, settings, args = span_of(t_span), settings_of(**steps, linear=linear), tuple(args)
+        asked = problem.asked(quantities) if isinstance(problem, Problem) else ()
+        # Copies, from which a copy of the run is made: the caller may change its arrays and lists.
+        self._given = (
+            (problem, method, span, copy.deepcopy(y0)),
+            {
+                "args": args, "group": group, "action": action, "frame": frame, "linear": linear,
+                "quantities": asked or quantities, **copy.deepcopy(steps),
+            },
+        )
         self._split: Any = None
         self._join: Parts | ComplexPoints | None = None
         check_stops(settings, span)
@@ -78,7 +83,6 @@ class Integrator:
             check_of_problem(group, frame, action, linear)
             if args:
                 raise ArgumentError("args", repr(args), "none: a problem takes no arguments")
-            asked = problem.asked(quantities)
             model = problem._model(asked)
             method = method or problem.method
             start = problem._start(y0, model, method)
