@@ -13,10 +13,11 @@ from __future__ import annotations
 from . import se3, so3
 from ._bodies import FreeBodies
 from ._errors import ArgumentError, RunError
+from ._events import Event
 from ._fields import CFunction, Field, Parts, Quantities, Samples
 from ._groups import GL, SL, SO, Gm, Group, Sp, expm
 from ._integrator import Integrator
-from ._ivp import Event, solve_ivp
+from ._ivp import solve_ivp
 from ._lieflow import __version__
 from ._problems import (
     Problem,

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _lieflow
 from ._arrays import MEMBERSHIP, Array, finite, kept, name_of, number, real, value, what, whole
 from ._errors import ArgumentError
+from ._events import Event, changes_of, events_of, for_second_run, texts_of
 from ._fields import CFunction, Field, Parts, Quantities, Samples, State, address
 from ._groups import Group
 from ._problems import Problem
@@ -21,83 +22,11 @@ from ._result import Layout, OdeSolution, Result, warn_of_events
 from ._second_run import Repeated, beyond, changed, second
 from ._unitary import ComplexPoints, ComplexState, Unitary, is_su2, is_unitary_name
 
-__all__ = ["Event", "solve_ivp"]
+__all__ = ["solve_ivp"]
 
 
 #: The method if none is given.
 METHOD = "rkmk dop853 exp"
-
-
-class Event:
-    """An event: the zeros of g(t, y), with what happens there.
-
-    Parameters
-    ----------
-    g : callable or str
-        g(t, y, *args), a number; or a formula in t and y1, y11, … A problem has the names of its columns. Where it changes
-        its sign, the zero is found to rounding of t.
-    terminal : int or bool
-        The zero that ends the run, from 1. True is 1, and 0 or False is none.
-    direction : float
-        Only rising zeros for a positive number, only falling ones for a negative number.
-    change : callable, optional
-        change(t, y, *args) returns the new y. The run goes on from it. It must be on M. The event and a row of ``t_eval`` at
-        that time have the y before it; ``sol`` and the row at the end of the step have the new one. Of a problem y is the
-        array of the numbers of its state, in the order of :attr:`lieflow.Integrator.state`; a complex state is a complex
-        array.
-    points : int, optional
-        At how many points of each step g is evaluated. The default depends on g.
-    name : str, optional
-        The name in messages.
-    """
-
-    __slots__ = ("change", "direction", "g", "name", "points", "terminal")
-
-    def __init__(
-        self,
-        g: Callable[..., Any] | str,
-        terminal: int | bool = 0,
-        direction: float = 0.0,
-        change: Callable[..., Any] | None = None,
-        points: int | None = None,
-        name: str | None = None,
-    ) -> None:
-        if not (callable(g) or isinstance(g, str)):
-            raise TypeError(f"g: a value of type {type(g).__name__}, expected a function of t and y, or a formula")
-        if change is not None and not callable(change):
-            raise TypeError(f"change: a value of type {type(change).__name__}, expected a function of t and y")
-        self.g, self.change = g, change
-        self.terminal = int(terminal) if isinstance(terminal, (bool, np.bool_)) else whole("terminal", terminal)
-        self.direction = number("direction", direction)
-        if self.direction != self.direction:
-            raise ArgumentError("direction", repr(direction), "a number: its sign tells which zeros count")
-        self.points = None if points is None else whole("points", points, 1, 100_000)
-        default = g if isinstance(g, str) else getattr(g, "__name__", "event")
-        self.name = name if name is not None else default
-
-    def _without_end(self) -> Event:
-        """The event that ends no run."""
-        return Event(self.g, 0, self.direction, self.change, self.points, self.name)
-
-    def __repr__(self) -> str:
-        return f"lieflow.Event({self.name}, terminal={self.terminal}, direction={self.direction})"
-
-
-def _event(i: int, g: Any) -> Event:
-    """An event of SciPy's kind: a function with the attributes terminal and direction."""
-    if isinstance(g, Event):
-        return g
-    if isinstance(g, str):
-        return Event(g)
-    if not callable(g):
-        raise TypeError(f"events[{i}]: a value of type {type(g).__name__}, expected a function of t and y, or a formula")
-    return Event(g, getattr(g, "terminal", None) or 0, getattr(g, "direction", None) or 0.0)
-
-
-def events_of(events: Any) -> list[Event]:
-    """Return the events of an argument: none, one or a list."""
-    given = events if isinstance(events, (list, tuple)) else () if events is None else (events,)
-    return [_event(i, g) for i, g in enumerate(given)]
 
 
 def _positive(name: str, x: Any) -> float | None:
@@ -505,7 +434,7 @@ def _of_field(
     sol = None if curve is None else OdeSolution(curve, made_by, ready.layout)
 
     def again(result: Result) -> Repeated:
-        others = _on(result, events)
+        others = for_second_run(result, events)
 
         def run(finer: dict[str, Any], change: float = 0.0) -> Result:
             start: Any = np.reshape(changed(ready.flat, change), ready.shape)  # y0, which may have changed
@@ -514,17 +443,7 @@ def _of_field(
 
         return second(run, settings, result, span[0], seconds)
 
-    return Result(sol=sol, _layout=ready.layout, _again=again, _changes=_changes(events), **found)
-
-
-def _changes(events: list[Event]) -> list[int]:
-    """Return the numbers of the events that change the state."""
-    return [i for i, event in enumerate(events) if event.change]
-
-
-def _on(first: Result, events: list[Event]) -> list[Event]:
-    """Return the events of a second run. One that ended the first run may be earlier or later there."""
-    return events if first.status == 0 else [event._without_end() for event in events]
+    return Result(sol=sol, _layout=ready.layout, _again=again, _changes=changes_of(events), **found)
 
 
 def check_stops(settings: dict[str, Any], span: tuple[float, float]) -> None:
@@ -549,7 +468,7 @@ def _of_problem(
     times: Array | None, events: list[Event], quantities: Any, callback: Any, args: tuple[Any, ...],
 ) -> Result:
     asked = problem.asked(quantities)
-    texts = _texts(events)
+    texts = texts_of(events)
     model, layout = problem._both(asked, texts)
     if method is None:
         method = problem.method
@@ -601,7 +520,7 @@ def _of_problem(
         repeat = again
         again = lambda result: repeat(result)  # noqa: E731, functions of the user need not pickle
     return Result(
-        sol=sol, _rows=rows, _first=first, _layout=layout, _again=again, _changes=_changes(events), **found
+        sol=sol, _rows=rows, _first=first, _layout=layout, _again=again, _changes=changes_of(events), **found
     )
 
 
@@ -611,14 +530,14 @@ def _problem_again(
 ) -> Repeated:
     """The exact motion or a second run of a problem, beside a result whose run took so many seconds."""
     asked, events, args = given
-    model, layout = problem._both(asked, _texts(events))
-    plain = start is None and len(result.t) > 0 and not _changes(events)
+    model, layout = problem._both(asked, texts_of(events))
+    plain = start is None and len(result.t) > 0 and not changes_of(events)
     # Euler angles and quaternions are those of the rows, up to turns and signs.
     found = model.exact(span[0], result.t, method, result._rows) if plain else None
     exact = None if found is None else layout.split(found)
     if exact is not None and not events:
         return "the exact motion", Result(y=exact, t_events=[]), None
-    others = _on(result, events)
+    others = for_second_run(result, events)
 
     def run(finer: dict[str, Any], change: float = 0.0) -> Result:
         of = start if change == 0.0 else changed(model.start(method) if start is None else start, change)
@@ -628,11 +547,6 @@ def _problem_again(
     if exact is not None:
         return "the exact motion, and the events by " + found_by, Result(y=exact, t_events=other.t_events), None
     return found_by, other, grown
-
-
-def _texts(events: list[Event]) -> tuple[tuple[str, str], ...]:
-    """The events that are formulas of a problem, each with its name."""
-    return tuple((f"events[{i}]", event.g) for i, event in enumerate(events) if isinstance(event.g, str))
 
 
 def _of_rows(g: Callable[..., Any], layout: Layout, args: tuple[Any, ...]) -> Callable[..., Any]:
