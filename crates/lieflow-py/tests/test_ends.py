@@ -85,6 +85,48 @@ def test_a_solution_without_an_end_ends_at_the_event():
     assert r.t_end < 40 == r.sol.t_max and r.sol(40.0).omega_body.shape == (3,)
 
 
+@pytest.mark.parametrize("g", ["ln(11 - t)", lambda t, y: [10.0 - t][int(t > 12)]], ids=["formula", "function"])
+def test_the_rest_of_a_solution_needs_no_event(g):
+    r = lf.solve_ivp(BODY, (0, 40), events=lf.Event(g, terminal=1), dense_output=True)
+    times = np.linspace(0, r.t_end, 50)
+    before = r.sol(times)
+    far = r.sol([20.0, 40.0])
+    assert r.t_end == pytest.approx(10.0) and r.sol.t_max == 40.0
+    assert np.abs(far.attitude - BODY.exact([20.0, 40.0]).attitude).max() < 1e-9
+    assert all(np.array_equal(before[name], x) for name, x in r.sol(times).items())
+
+
+def test_the_rest_of_a_solution_has_the_changes_of_the_state():
+    push = lf.Event(lambda t, y: t - 15.0, change=lambda t, m: 2 * m)
+    options = {"quantities": "momentum_body", "dense_output": True}
+    r = lf.solve_ivp(BODY, (0, 40), events=[lf.Event("t - 10", terminal=1), push], **options)
+    whole = lf.solve_ivp(BODY, (0, 40), events=[lf.Event("t - 10"), push], **options)
+    assert r.t_end == 10.0 and np.array_equal(r.sol(20.0).momentum_body, whole.sol(20.0).momentum_body)
+
+
+@pytest.mark.parametrize(
+    ("change", "options", "reached", "words"),
+    [(None, {"max_steps": 30}, 10.0, "30 attempts"), ("at 12", {}, 10.0, "KeyError: 'at 12'")],
+)
+def test_a_rest_that_fails_is_told_and_not_tried_again(change, options, reached, words):
+    calls = []
+
+    def push(t, state):
+        calls.append(t)
+        raise KeyError(change)
+
+    events = [lf.Event("t - 10", terminal=1), *([] if change is None else [lf.Event("t - 12", change=push)])]
+    r = lf.solve_ivp(BODY, (0, 40), events=events, dense_output=True, **options)
+    for _ in range(2):
+        with pytest.raises(lf.RunError, match=f"t: the solution ends at 1.*its rest failed: {words}") as caught:
+            r.sol([1.0, 20.0])
+        assert r.sol.t_max == 40.0 and len(calls) == (change is not None)
+    assert change is None or isinstance(caught.value.__cause__, KeyError)
+    assert np.abs(r.sol(reached).attitude - BODY.exact(reached).attitude).max() < 1e-9
+    copy = pickle.loads(pickle.dumps(r.sol))
+    assert reached <= copy.t_max < 13 and np.array_equal(copy(reached).attitude, r.sol(reached).attitude)
+
+
 def test_the_rule_of_the_second_tolerance_is_that_of_the_command_line():
     assert _lieflow.LAST_DIGITS == 64 * np.finfo(float).eps
     for rtol, atol, factor in ((1e-9, 0, 0.1), (1e-13, 0, 0.1), (0.9e-13, 0.9e-13, 10), (0, 1e-14, 10), (1e-14, 1e-6, 0.1)):

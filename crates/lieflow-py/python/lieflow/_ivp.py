@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _lieflow
 from ._arrays import MEMBERSHIP, Array, finite, kept, name_of, number, real, value, what, whole
-from ._errors import ArgumentError
+from ._errors import ArgumentError, RunError
 from ._events import Event, changes_of, events_of, for_second_run, texts_of
 from ._fields import CFunction, Field, Parts, Quantities, Samples, State, address
 from ._groups import Group
@@ -427,9 +427,7 @@ def _of_field(
         found["y"] = ready.layout.split(found["y"])
         found["y_events"] = [ready.layout.split(y) for y in found["y_events"]]
         found["y_end"] = ready.layout.split(found["y_end"])
-    lost = found.pop("lost")
-    if lost is not None:
-        found["message"] += f": {lost}"
+    found["message"] = _reason(found)
     made_by = (ready.space_args, method, ready.linear, ready.flat)
     sol = None if curve is None else OdeSolution(curve, made_by, ready.layout)
 
@@ -444,6 +442,17 @@ def _of_field(
         return second(run, settings, result, span[0], seconds)
 
     return Result(sol=sol, _layout=ready.layout, _again=again, _changes=changes_of(events), **found)
+
+
+def _reason(found: dict[str, Any]) -> str:
+    """Why a run ended, with the formula that has no value."""
+    lost, message = found.pop("lost"), found["message"]
+    return f"{message}: {lost}" if lost is not None and found["status"] < 0 else message
+
+
+def _one(t: float, y: Any) -> float:
+    """The function of an event without zeros."""
+    return 1.0
 
 
 def check_stops(settings: dict[str, Any], span: tuple[float, float]) -> None:
@@ -493,9 +502,8 @@ def _of_problem(
     found = model.solve(method, span, start, own, times, parts, told)
     seconds = thread_time() - clock
     warn_of_events(found, 3)
-    curve, lost, rows = found.pop("curve"), found.pop("lost"), found["y"]
-    if lost is not None and found["status"] < 0:
-        found["message"] += f": {lost}"
+    found["message"] = _reason(found)
+    curve, rows = found.pop("curve"), found["y"]
     found["y"] = layout.split(rows)
     found["y_events"] = [layout.split(y) for y in found["y_events"]]
     found["y_end"] = State(layout.split(found["y_end"]), found.pop("state"), problem._form(model, method))
@@ -503,12 +511,22 @@ def _of_problem(
     by_event = found["status"] == 1 and not found["_by_callback"]
     if sol is not None and by_event and found["t_end"] != span[1] and math.isfinite(span[1]):
 
-        def rest() -> _lieflow.Curve:
-            on = [(*part[:3], 0, *part[4:]) for part in parts]
-            whole: _lieflow.Curve | None = model.solve(method, span, start, own, None, on, None)["curve"]
-            return curve if whole is None else whole
+        def rest() -> tuple[_lieflow.Curve, RunError | None]:
+            # Events without a change keep their places, so that the steps are the same, but have no zeros.
+            on = [(part[0] if part[4] else _one, *part[1:3], 0, *part[4:]) for part in parts]
+            whole, reason, cause = curve, None, None
+            try:
+                again = model.solve(method, span, start, own, None, on, None)
+                whole, reason = again["curve"] or curve, None if again["status"] == 0 else _reason(again)
+            except Exception as error:
+                reason, cause = f"{type(error).__name__}: {error}", error
+            if reason is None:
+                return whole, None
+            lost = RunError(f"t: the solution ends at {whole.t_span[1]}; its rest failed: {reason}")
+            lost.__cause__ = cause
+            return whole, lost
 
-        sol._rest = span[1], rest
+        sol._end, sol._rest = span[1], rest
 
     def first() -> Quantities:
         is_start = found["t"][0] == span[0]

@@ -79,38 +79,47 @@ class OdeSolution:
 
     ``sol(t)`` has the shape of t followed by that of y; of a problem and of parts it has arrays by name. Times may be in any
     order. It can be pickled, and used from any thread. Error: that of the continuous extension of the method. A time
-    outside of the run is refused. Where an event ended the run of a problem, the solution goes on to the end of t_span, if
-    that is finite. This rest is computed when it is asked for; a pickled solution has what was computed.
+    outside of the run is refused.
+
+    Where an event ended the run of a problem, the solution goes on to the end of t_span, if that is finite, and ``t_max`` is
+    that end. This rest is computed once, when it is first asked for, by the steps of the run again. The limit ``max_steps``
+    holds for all of them. Only events that change the state are looked at. If this run fails, times after the last one that it
+    reached raise :class:`lieflow.RunError` with the reason. A pickled solution has what was computed, and ends there.
     """
 
-    __slots__ = ("_curve", "_layout", "_lock", "_made_by", "_rest")
+    __slots__ = ("_curve", "_end", "_layout", "_lock", "_lost", "_made_by", "_rest")
 
     def __init__(
         self,
         curve: _lieflow.Curve,
         made_by: tuple[Any, ...],
         layout: Layout | Parts | ComplexPoints | None,
-        rest: tuple[float, Callable[[], _lieflow.Curve]] | None = None,
     ) -> None:
-        # The rest is the end of the span, and what computes the curve to there.
-        self._curve, self._made_by, self._layout, self._rest = curve, made_by, layout, rest
+        self._curve, self._made_by, self._layout, self._end = curve, made_by, layout, curve.t_span[1]
+        # What computes the curve to the end, until that is done, and why this failed.
+        self._rest: Callable[[], tuple[_lieflow.Curve, RunError | None]] | None = None
+        self._lost: RunError | None = None
         self._lock = RLock()
 
     def __call__(self, t: ArrayLike) -> Any:
         """Return the points at t."""
-        rest = self._rest
-        if rest is not None:
-            times, end = np.asarray(t), self._curve.t_span[1]
-            if times.size and times.dtype.kind in "fiu" and bool(((times - end) * (rest[0] - end) > 0).any()):
-                with self._lock:
-                    if self._rest is not None:  # no other thread was faster
-                        self._curve, self._rest = rest[1](), None
+        if self._rest is not None and self._is_beyond(t):
+            with self._lock:
+                if self._rest is not None:  # no other thread was faster
+                    self._curve, self._lost = self._rest()
+                    self._rest = None
+        if self._lost is not None and self._is_beyond(t):
+            raise self._lost.with_traceback(None)
         rows = self._curve.at(t)
         return rows if self._layout is None else self._layout.split(rows)
 
+    def _is_beyond(self, t: ArrayLike) -> bool:
+        """Is a time after the end of the curve?"""
+        times, end = np.asarray(t), self._curve.t_span[1]
+        return times.dtype.kind in "fiu" and bool(((times - end) * (self._end - end) > 0).any())
+
     def _span(self) -> tuple[float, float]:
-        rest, (start, end) = self._rest, self._curve.t_span
-        return (start, end) if rest is None else (start, rest[0])
+        return self._curve.t_span[0], self._end
 
     @property
     def t_min(self) -> float:
