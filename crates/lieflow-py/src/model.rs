@@ -252,9 +252,23 @@ impl Model {
 
     fn method(&self, py: Python<'_>, method: &str) -> PyResult<(MethodSpec, Orders)> {
         self.fitting.method(py, method, |spec| {
-            self.model.fits(spec)?;
-            self.model.orders(spec)
+            let orders = self.model.fits(spec).and_then(|_| self.model.orders(spec));
+            orders.map_err(|error| format!("{error}{}", self.other_state(spec)))
         })
+    }
+
+    /// The quantities whose state a method integrates that does not fit these, in words: all, or the first ones.
+    fn other_state(&self, method: &MethodSpec) -> String {
+        let fits = |name: &&str| {
+            let model = self.problem.model(self.problem.layers()[0], &[name]);
+            model.is_ok_and(|model| model.fits(method).is_ok())
+        };
+        let quantities = (self.problem.kind().quantities)().into_iter().map(|q| q.name);
+        match *quantities.filter(fits).collect::<Vec<_>>() {
+            [] => String::new(),
+            [a, b, c, _, _, ..] => format!("; it runs where quantities are among {a}, {b}, {c}, …"),
+            ref names => format!("; it runs where quantities are among {}", names.join(", ")),
+        }
     }
 
     fn event<'a>(&'a self, event: &'a Watched) -> EventPlan<'a> {

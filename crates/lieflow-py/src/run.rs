@@ -41,7 +41,7 @@ impl Fitting {
         &self,
         py: Python<'_>,
         name: &str,
-        orders: impl FnOnce(&MethodSpec) -> Result<Orders, lieflow::Error>,
+        orders: impl FnOnce(&MethodSpec) -> Result<Orders, String>,
     ) -> PyResult<(MethodSpec, Orders)> {
         let known = |all: &Vec<(String, MethodSpec, Orders)>| {
             all.iter().find(|(known, ..)| known == name).map(|(_, spec, o)| (spec.clone(), *o))
@@ -50,8 +50,7 @@ impl Fitting {
             return Ok(found);
         }
         let spec = spec_of(py, name)?;
-        let orders =
-            orders(&spec).map_err(|error| argument(py, "method", error.to_string(), ""))?;
+        let orders = orders(&spec).map_err(|error| argument(py, "method", error, ""))?;
         if let Ok(mut all) = self.0.lock() {
             all.push((name.to_owned(), spec.clone(), orders));
         }

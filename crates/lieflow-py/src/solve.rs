@@ -255,8 +255,8 @@ impl Ready {
         let refuse = |error: Error| refused(py, "fun", &error);
         let problem = space.problem(field, settings.linear).map_err(refuse)?;
         let orders = |spec: &MethodSpec| {
-            space.check_linear(spec)?;
-            problem.orders(spec)
+            let orders = space.check_linear(spec).and_then(|()| problem.orders(spec));
+            orders.map_err(|error| error.to_string())
         };
         let (spec, orders) = fitting.method(py, method, orders)?;
         let steps = settings.steps(py, t_span, (orders, || y0.into()), "fun")?;

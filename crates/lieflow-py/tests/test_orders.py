@@ -85,3 +85,17 @@ def test_a_problem_has_the_same_method_with_dense_output():
     plain, kept = (lf.solve_ivp(BODY, (0, 30), dense_output=dense) for dense in (False, True))
     assert np.array_equal(plain.t, kept.t) and np.array_equal(plain.momentum_body, kept.momentum_body)
     assert lf.solve_ivp(LEVELS, (0, 1), dense_output=True).check().sol(0.5) is not None
+
+
+def test_the_quantities_decide_which_state_has_an_order():
+    top = lf.HeavyTop(inertia=[1.0, 1.0, 0.6], weight=[0, 0, 1.0], omega_body=[0.4, 1.1, 2.0], vertical=[0.6, 0, 0.8])
+    quantities = ["momentum_body", "energy"]
+    assert "energy-casimir" in top.methods(quantities) and top.orders("energy-casimir", quantities) == (2, 2)
+    body = lf.RigidBody(inertia=[1.0, 2.0, 3.0], momentum_body=[0.3, 0.4, 0.5])
+    assert body.orders("lewis-simo") == (2, 2) and body.orders("lewis-simo", "momentum_body") == (4, 4)
+    for call in (lambda: top.orders("energy-casimir"), lambda: lf.solve_ivp(top, (0, 1), method="energy-casimir", steps=8)):
+        with pytest.raises(lf.ArgumentError, match="^method: energy-casimir.*; it runs where quantities are among .*momentum_body") as caught:
+            call()
+        assert "attitude" not in str(caught.value).split("among")[1]
+    with pytest.raises(lf.ArgumentError, match="needs an attitude alone as its state; it runs where quantities are among .*attitude"):
+        body.orders("rk4-qr", "momentum_body")

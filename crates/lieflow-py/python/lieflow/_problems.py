@@ -131,12 +131,17 @@ class Problem:
         return tuple(self._problem.columns(quantity))
 
     def methods(self, quantities: Sequence[str] | str | None = None) -> tuple[str, ...]:
-        """Return the names of the methods that run on it."""
+        """Return the names of the methods that run on it, where these quantities are computed."""
         return tuple(self._model(self.asked(quantities), ()).methods())
 
-    def orders(self, method: str) -> tuple[int | None, int | None]:
-        """Return the order of the steps of a method, and that of its dense output; None for one that is exact."""
-        return self._model(self.quantities).orders(name_of("method", method))
+    def orders(
+        self, method: str, quantities: Sequence[str] | str | None = None
+    ) -> tuple[int | None, int | None]:
+        """Return the order of the steps of a method, and that of its dense output; None for one that is exact.
+
+        The quantities decide which state the method integrates, as in :meth:`methods`.
+        """
+        return self._model(self.asked(quantities)).orders(name_of("method", method))
 
     def exact(self, t: ArrayLike, quantities: Sequence[str] | str | None = None, *, t0: float = 0.0) -> Quantities | None:
         """Return the exact motion at the times t, from the start at t0; None where it is not known.
