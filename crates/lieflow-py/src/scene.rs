@@ -3,8 +3,9 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use lieflow::Direction;
 use lieflow_model::problem::Plan;
-use lieflow_model::scene;
+use lieflow_model::scene::{self, SceneEvent};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -50,9 +51,20 @@ impl Scene {
     fn t_span(&self) -> [f64; 2] {
         self.0.grid.t_span()
     }
+    /// Each event: its formula, the zero that ends the run or 0, its direction, its name.
     #[getter]
-    fn events(&self) -> Vec<String> {
-        self.0.events.iter().map(|event| event.name.clone()).collect()
+    fn events(&self) -> Vec<(&str, u64, i32, &str)> {
+        let sign = |direction| match direction {
+            Direction::Rising => 1,
+            Direction::Falling => -1,
+            Direction::Both => 0,
+        };
+        let all = self.0.events.iter();
+        all.map(|event| {
+            let SceneEvent { name, direction, stop_after, text, .. } = event;
+            (&**text, stop_after.unwrap_or_default(), sign(*direction), &**name)
+        })
+        .collect()
     }
     #[getter]
     fn kind(&self) -> &'static str {

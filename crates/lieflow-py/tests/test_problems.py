@@ -201,8 +201,7 @@ def test_a_scene_runs(name, tmp_path):
     r = scene.run()
     assert r.success and len(r.t) > 1
     for quantity in scene.quantities:
-        if quantity != "formulas":
-            assert len(r.y[quantity]) == len(r.t)
+        assert len(r.y[quantity]) == len(r.t)
     file = tmp_path / "scene.toml"
     file.write_text(scene.text)
     if name != "gyro-record":

@@ -35,6 +35,8 @@ pub struct SceneEvent {
     pub direction: Direction,
     /// The zero that ends the run, from 1.
     pub stop_after: Option<u64>,
+    /// The text of its function.
+    pub text: String,
     when: RowFormula,
 }
 
@@ -120,7 +122,7 @@ pub(super) fn resolve(
                 format!("`{when}` is the same at all times, expected a column or t in it");
             return Err(Refusal::at(key("when"), message).into());
         }
-        Ok(formula)
+        Ok((when.trim().to_owned(), formula))
     });
     let direction = direction.and_then(|direction| {
         let Some(given) = direction else { return Ok(Direction::Both) };
@@ -129,6 +131,6 @@ pub(super) fn resolve(
         let found = DIRECTIONS.iter().find(|(name, _)| *name == given);
         Ok(found.ok_or_else(unknown)?.1)
     });
-    let (name, when, direction, stop_after) = all!(name, when, direction, stop_after)?;
-    Ok(SceneEvent { name, direction, stop_after: stop_after.map(|count| count.0), when })
+    let (name, (text, when), direction, stop_after) = all!(name, when, direction, stop_after)?;
+    Ok(SceneEvent { name, direction, stop_after: stop_after.map(|count| count.0), text, when })
 }

@@ -9,6 +9,7 @@ from typing import Any
 
 from . import _lieflow
 from ._errors import RunError
+from ._events import Event
 from ._fields import State
 from ._problems import Problem, _quietly
 from ._result import Layout, Result, warn_of_events
@@ -58,14 +59,22 @@ class Scene:
 
     @property
     def quantities(self) -> tuple[str, ...]:
-        """What is computed."""
-        return tuple(self._scene.quantities)
+        """The quantities that are computed, for :func:`lieflow.solve_ivp`.
+
+        Results of :meth:`run` have the columns of ``[output.formulas]``, too: ``result["formulas"]``.
+        """
+        return tuple(name for name in self._scene.quantities if name != "formulas")
+
+    @property
+    def events(self) -> list[Event]:
+        """The events, for :func:`lieflow.solve_ivp`. It does not know the names of ``[output.formulas]``."""
+        return [Event(when, stop, direction, name=name) for when, stop, direction, name in self._scene.events]
 
     def run(self) -> Result:
         """Run the scene, without the interpreter. The result has the rows that ``lieflow run`` writes."""
         schema, found = self._scene.run()
         warn_of_events(found, 2)
-        layout = Layout(schema, self.quantities)
+        layout = Layout(schema, tuple(self._scene.quantities))
         rows = found["y"]
         found["y"] = layout.split(rows)
         found["y_events"] = [layout.split(y) for y in found["y_events"]]
@@ -73,7 +82,8 @@ class Scene:
         found["y_end"] = State(layout.split(found["y_end"]), found.pop("state"), problem._form_of(form))
 
         def again(_: Result) -> Any:
-            raise RunError("a scene is not run again: solve_ivp(scene.problem, scene.t_span).estimate_error() has an estimate")
+            advice = "solve_ivp(scene.problem, scene.t_span, events=scene.events, quantities=scene.quantities)"
+            raise RunError(f"a scene is not run again: {advice}.estimate_error() has an estimate")
 
         return Result(sol=None, _again=again, _rows=rows, _first=layout.split(rows[:1], every=True), _layout=layout, **found)
 
