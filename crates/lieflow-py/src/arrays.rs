@@ -136,19 +136,14 @@ pub(crate) fn output<'py>(
         // SAFETY: every number is written before the array is returned, or the array is dropped with an exception.
         return Ok(unsafe { PyArrayDyn::<f64>::new(py, &*shape, false) });
     };
-    let expected =
-        || format!("a writeable array of float64 in C order, shape {}", shape_text(shape));
-    let Some(array) = plain(out) else {
-        return Err(argument(py, "out", out.get_type().name()?.to_string(), expected()));
+    let fits = |array: &Bound<'py, PyArrayDyn<f64>>| {
+        array.shape() == shape && array.try_readwrite().is_ok()
     };
-    if array.shape() != shape || array.try_readwrite().is_err() {
-        return Err(argument(
-            py,
-            "out",
-            format!("shape {}", shape_text(array.shape())),
-            expected(),
-        ));
-    }
+    let Some(array) = plain(out).filter(fits) else {
+        let wrong = py.import("lieflow._arrays")?.getattr("wrong_out")?;
+        let error = wrong.call1((out, "float64", PyTuple::new(py, &*shape)?))?;
+        return Err(PyErr::from_value(error));
+    };
     for input in inputs {
         input.keep_from(&array);
     }

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use lieflow::catalog::MethodSpec;
 use lieflow::solve::{Next, Status};
-use lieflow::{Direction, RunError, SaveAt, Stats, StepControl, TimeGrid};
+use lieflow::{Direction, Error, RunError, SaveAt, Stats, StepControl, TimeGrid};
 use lieflow_model::kinds::own::OwnField;
 use lieflow_model::problem::{Orders, Steps, Stops, Watcher, stop_after_hardest};
 use lieflow_model::scene::{beside_fixed_steps, default_tolerances};
@@ -111,7 +111,7 @@ impl Settings {
         t_span: [f64; 2],
         orders: Orders,
         start: impl FnOnce() -> Vec<f64>,
-    ) -> Result<Steps, lieflow::Error> {
+    ) -> Result<Steps, Error> {
         let dt = self.dt.map(|dt| TimeGrid::new(t_span, dt));
         let grid = dt.or_else(|| self.steps.map(|steps| TimeGrid::with_steps(t_span, steps)));
         if let Some(grid) = grid.transpose()? {
@@ -119,6 +119,10 @@ impl Settings {
         }
         let [rtol, atol] = match (self.rtol, self.atol) {
             (None, None) => default_tolerances(orders.step, &start()),
+            (None, Some(0.0)) => {
+                let expected = "a number > 0, or an rtol beside it".into();
+                return Err(Error::OutOfRange { arg: "atol".into(), value: 0.0, expected });
+            }
             // As in scenes.
             given => [given.0.unwrap_or(0.0), given.1.unwrap_or(0.0)],
         };
@@ -382,7 +386,7 @@ impl Seen {
         result.set_item("restored", stats.restored)?;
         result.set_item("unsure_steps", stats.unsure_steps)?;
         let ended_by = status.as_ref().ok().and_then(Status::event);
-        result.set_item("unsure", stats.unsure_in_words(limit, ended_by))?;
+        result.set_item("_unsure", stats.unsure_in_words(limit, ended_by))?;
         Ok(result)
     }
 }

@@ -242,3 +242,42 @@ def test_a_quantity_that_was_not_asked_for_is_told():
     for event, error in ((lambda t, y: y.momentum_body[0], AttributeError), (lambda t, y: y["momentum_body"][0], KeyError)):
         with pytest.raises(error, match="no quantity 'momentum_body', expected one of attitude; .*quantities="):
             lf.solve_ivp(BODY, (0, 1), events=event, quantities="attitude")
+
+
+def test_keys_without_names_are_told_with_the_class():
+    for made, first in ((lf.RigidBody, "inertia"), (lf.HeavyTop, "inertia"), (lf.Toda, "positions")):
+        with pytest.raises(TypeError, match=rf"^{made.__name__}: an array of int64 without a name, expected keys by name, as {first}=\.\.\.$"):
+            made([1, 2, 3])
+
+
+@pytest.mark.parametrize("call", [lf.so3.exp, lf.so3.hat], ids=["compiled", "numpy"])
+def test_what_is_wrong_with_out_is_told(call):
+    read_only = np.empty((3, 3))
+    read_only.flags.writeable = False
+    for out, value in (
+        (read_only, "a read-only array"),
+        (np.empty((3, 3), order="F"), "an array that is not in C order"),
+        (np.empty((6, 3))[::2], "an array that is not in C order"),
+        (np.empty((3, 3), np.float32), "an array of float32"),
+        (np.empty((2, 3)), r"shape \(2, 3\)"),
+        ([1.0], "a value of type list"),
+    ):
+        with pytest.raises(lf.ArgumentError, match=rf"^out: {value}, expected a writeable array of float64 in C order, shape \(3, 3\)$"):
+            call(np.ones(3), out=out)
+
+
+def test_a_tolerance_that_is_0_is_the_one_that_was_given():
+    for options, words in (({"atol": 0}, "^atol: 0, expected a number > 0, or an rtol beside it$"), ({"rtol": 0}, "^rtol: 0, expected > 0")):
+        for run in (lf.solve_ivp, lambda f, span, y, **keys: lf.Integrator(f, None, span, y, **keys)):
+            with pytest.raises(lf.ArgumentError, match=words):
+                run(turn, (0, 1), np.eye(3), **options, **ROTATION)
+
+
+@pytest.mark.parametrize("fun", [turn, lf.RigidBody(inertia=[1, 2, 3], omega_body=[0.01, 1, 0])], ids=["function", "problem"])
+def test_the_estimate_of_an_error_warns_once_and_here(fun):
+    system = {"y0": np.eye(3), "method": "rkmk dop853", **ROTATION} if fun is turn else {}
+    with pytest.warns(RuntimeWarning, match="zeros of events may be missed"):
+        r = lf.solve_ivp(fun, (0, 10), events=lf.Event(lambda t, y: np.sin(500 * t)), **system)
+    with pytest.warns(RuntimeWarning, match="zeros of events may be missed") as told:
+        r.estimate_error()
+    assert [entry.filename for entry in told] == [__file__]

@@ -16,7 +16,7 @@ from ._errors import ArgumentError
 
 __all__ = [
     "MEMBERSHIP", "elements", "finite", "first", "into", "kept", "leading", "name_of", "number", "own", "real", "series", "together",
-    "value", "what", "whole",
+    "value", "what", "whole", "wrong_out",
 ]
 
 Array = NDArray[np.float64]
@@ -159,10 +159,24 @@ def into(found: NDArray[Any], out: NDArray[Any] | None) -> NDArray[Any]:
         return found
     kind = isinstance(out, np.ndarray) and out.dtype == found.dtype and out.shape == found.shape
     if not (kind and out.flags.c_contiguous and out.flags.writeable):
-        described = f"an array of {out.dtype}, shape {out.shape}" if isinstance(out, np.ndarray) else type(out).__name__
-        raise ArgumentError("out", described, f"a writeable array of {found.dtype} in C order, shape {found.shape}")
+        raise wrong_out(out, found.dtype, found.shape)
     out[...] = found
     return out
+
+
+def wrong_out(out: Any, dtype: Any, shape: tuple[int, ...]) -> ArgumentError:
+    """Return the error of an ``out`` that cannot take numbers of this type and shape."""
+    if not isinstance(out, np.ndarray):
+        described = f"a value of type {type(out).__name__}"
+    elif out.dtype != dtype:
+        described = f"an array of {out.dtype}"
+    elif out.shape != shape:
+        described = f"shape {out.shape}"
+    elif not out.flags.c_contiguous:
+        described = "an array that is not in C order"
+    else:
+        described = "an array that is not aligned" if out.flags.writeable else "a read-only array"
+    return ArgumentError("out", described, f"a writeable array of {dtype} in C order, shape {shape}")
 
 
 def leading(size: int | Sequence[int] | None) -> tuple[int, ...]:

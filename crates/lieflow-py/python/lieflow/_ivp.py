@@ -397,12 +397,12 @@ def solve_ivp(
         check_of_problem(group, frame, action, linear)
         if args and not any(callable(event.g) or event.change for event in planned):
             raise ArgumentError("args", repr(args), "none: a problem takes no arguments, and no event is a function")
-        return _of_problem(fun, span, y0, method, settings, times, planned, quantities, callback, args)
+        return warn_of_events(_of_problem(fun, span, y0, method, settings, times, planned, quantities, callback, args))
     if quantities is not None:
         raise ArgumentError("quantities", repr(quantities), "none: only a problem has quantities")
-    return _of_field(
-        fun, span, y0, METHOD if method is None else method, settings, times, planned, callback, (args, group, action, frame)
-    )
+    space = args, group, action, frame
+    method = METHOD if method is None else method
+    return warn_of_events(_of_field(fun, span, y0, method, settings, times, planned, callback, space))
 
 
 def _of_field(
@@ -419,7 +419,6 @@ def _of_field(
     clock = thread_time()
     found = _lieflow.solve(ready.space, ready.field, ready.args, method, span, ready.flat, own, times, parts, told)
     seconds = thread_time() - clock
-    warn_of_events(found, 3)
     curve, _ = found.pop("curve"), found.pop("state")
     if found["nfev"] is not None:
         found["nfev"] += 1  # the call that checks the value of f at the start
@@ -501,7 +500,6 @@ def _of_problem(
     clock = thread_time()
     found = model.solve(method, span, start, own, times, parts, told)
     seconds = thread_time() - clock
-    warn_of_events(found, 3)
     found["message"] = _reason(found)
     curve, rows = found.pop("curve"), found["y"]
     found["y"] = layout.split(rows)
@@ -554,7 +552,7 @@ def _problem_again(
     found = model.exact(span[0], result.t, method, result._rows) if plain else None
     exact = None if found is None else layout.split(found)
     if exact is not None and not events:
-        return "the exact motion", Result(y=exact, t_events=[]), None
+        return "the exact motion", Result(y=exact, t_events=[], _unsure=None), None
     others = for_second_run(result, events)
 
     def run(finer: dict[str, Any], change: float = 0.0) -> Result:
@@ -563,7 +561,8 @@ def _problem_again(
 
     found_by, other, grown = second(run, settings, result, span[0], seconds)
     if exact is not None:
-        return "the exact motion, and the events by " + found_by, Result(y=exact, t_events=other.t_events), None
+        exactly = Result(y=exact, t_events=other.t_events, _unsure=other._unsure)
+        return "the exact motion, and the events by " + found_by, exactly, None
     return found_by, other, grown
 
 

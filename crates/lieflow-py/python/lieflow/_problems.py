@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _lieflow
-from ._arrays import Array, finite, kept, name_of, number, own, real
+from ._arrays import Array, finite, kept, name_of, number, own, real, what
 from ._errors import ArgumentError
 from ._fields import Quantities, Samples, State
 from ._result import Layout
@@ -318,7 +318,10 @@ class _Help:
 
 
 def _make(kind: dict[str, Any]) -> type[Problem]:
-    def init(self: Problem, **keys: Any) -> None:
+    def init(self: Problem, *values: Any, **keys: Any) -> None:
+        if values:
+            name = type(self).__name__
+            raise TypeError(f"{name}: {what(values[0])} without a name, expected keys by name, as {kind['keys'][0][0]}=...")
         self._make(keys)
         self._warn(3)
 

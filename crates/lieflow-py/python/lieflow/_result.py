@@ -20,11 +20,11 @@ from ._unitary import ComplexPoints
 __all__ = ["ErrorEstimate", "Layout", "OdeSolution", "Result", "warn_of_events"]
 
 
-def warn_of_events(found: dict[str, Any], stacklevel: int) -> None:
-    """Warn of steps in which zeros of events may be missed."""
-    unsure = found.pop("unsure")
-    if unsure is not None:
-        warnings.warn(unsure, RuntimeWarning, stacklevel=stacklevel + 1)
+def warn_of_events(result: Result) -> Result:
+    """Warn the caller of the caller of steps in which zeros of events may be missed. Return the result."""
+    if result._unsure is not None:
+        warnings.warn(result._unsure, RuntimeWarning, stacklevel=3)
+    return result
 
 
 class Layout:
@@ -351,12 +351,14 @@ class Result:
         smaller than a sixteenth of its distance, or than all of it where that is a tenth of the size of the points.
         Where the steps are the same again, because tolerances below rounding choose them, it takes steps of a quarter of
         their mean size. Where it is quick (0.3 s, or the time of the run), a run by tolerances takes at least 2000 steps, so
-        that it finds a short pulse of f that the first one passed over.
+        that it finds a short pulse of f that the first one passed over. A RuntimeWarning tells that zeros of events may be
+        missed in the second run.
         """
         again = self.__dict__.get("_again")
         if again is None:
             raise RunError("the run cannot be repeated: this is a copy of the result without f")
         found_by, other, grown = again(self)
+        warn_of_events(other)
         # Where an event changes the state, a row at the end of a step has the new one, and another row the old one.
         changes = [self.t_events[i] for i in self._changes]
         rows = ~np.isin(self.t, np.concatenate([*changes, []]))

@@ -73,7 +73,6 @@ class Scene:
     def run(self) -> Result:
         """Run the scene, without the interpreter. The result has the rows that ``lieflow run`` writes."""
         schema, found = self._scene.run()
-        warn_of_events(found, 2)
         layout = Layout(schema, tuple(self._scene.quantities))
         rows = found["y"]
         found["y"] = layout.split(rows)
@@ -85,7 +84,8 @@ class Scene:
             advice = "solve_ivp(scene.problem, scene.t_span, events=scene.events, quantities=scene.quantities)"
             raise RunError(f"a scene is not run again: {advice}.estimate_error() has an estimate")
 
-        return Result(sol=None, _again=again, _rows=rows, _first=layout.split(rows[:1], every=True), _layout=layout, **found)
+        result = Result(sol=None, _again=again, _rows=rows, _first=layout.split(rows[:1], every=True), _layout=layout, **found)
+        return warn_of_events(result)
 
     def __repr__(self) -> str:
         return f"lieflow.Scene({self._args[0]!r}{f', {list(self._args[1])}' if self._args[1] else ''})"
