@@ -155,6 +155,50 @@ def test_canonical_coordinates_of_the_second_kind(rng, order):
         lf.so3.ccsk(u, order="112")
 
 
+def slope(map_, u, v):
+    """dΨ_u(v) by differences of order 6."""
+    h, weights = 1e-2, {1: 3 / 4, 2: -3 / 20, 3: 1 / 60}
+    d = sum(c * (map_(u + n * h * v) - map_(u - n * h * v)) for n, c in weights.items()) / h
+    m = d @ np.swapaxes(map_(u), -1, -2)
+    return so3.vee((m - np.swapaxes(m, -1, -2)) / 2)
+
+
+@pytest.mark.parametrize("order", ["123", "321", "213", "231", "132", "312"])
+def test_the_inverse_differential_of_ccsk(rng, order):
+    u, v = rng.uniform(-1.2, 1.2, (2, 50, 3))
+    found = so3.dccskinv(u, slope(lambda x: so3.ccsk(x, order=order), u, v), order=order)
+    assert np.abs(found - v).max() < 1e-9
+    # At u = 0 it is v, and u is one of many.
+    assert np.array_equal(so3.dccskinv(np.zeros(3), v, order=order), v)
+    assert np.array_equal(so3.dccskinv(u[7], v, order=order)[3], so3.dccskinv(u[7], v[3], order=order))
+
+
+def test_the_pade_map(rng):
+    u, v = rng.standard_normal((2, 200, 3)) * np.geomspace(1e-8, 3, 200)[:, None]
+    a = so3.hat(u)
+    ratio = np.linalg.solve(np.eye(3) - a / 2 + a @ a / 12, np.eye(3) + a / 2 + a @ a / 12)
+    assert np.abs(so3.pade22(u) - ratio).max() < 1e-14 and so3.contains(so3.pade22(1e3 * u), 1e-13).all()
+    assert np.abs(so3.pade22([12**0.5, 0, 0]) - np.diag([1, -1, -1])).max() < 1e-15  # an angle of π
+    angle = np.linalg.norm(so3.log(so3.pade22([0.1, 0, 0])))
+    assert angle - 0.1 == pytest.approx(-(0.1**5) / 720, rel=1e-2)
+    found = so3.dpade22inv(u, slope(so3.pade22, u, v / 10))
+    assert np.abs(found - v / 10).max() < 1e-9
+    assert so3.dpade22inv(u[:, None], v).shape == (200, 200, 3)
+
+
+def test_refusals_of_ccsk_and_pade22():
+    for call, argument in (
+        (lambda: so3.dccskinv(np.ones(3), np.ones(3), order="112"), "order"),
+        (lambda: so3.dccskinv(np.ones((2, 3)), np.ones((4, 3))), "v"),
+        (lambda: so3.dpade22inv(np.ones((2, 3)), np.ones((4, 3))), "v"),
+        (lambda: so3.pade22([1e200, 0, 0]), "result"),
+        (lambda: so3.dpade22inv([1e200, 0, 0], [1, 0, 0]), "result"),
+    ):
+        with pytest.raises(lf.ArgumentError) as caught:
+            call()
+        assert caught.value.argument == argument
+
+
 @pytest.mark.parametrize("scalar_first", [True, False])
 def test_quaternions_are_scipys(rng, scalar_first):
     rotation = Rotation.random(50, random_state=3)

@@ -4,12 +4,14 @@ Vectors have shape (..., 3) and rotations (..., 3, 3). Leading axes broadcast. E
 numbers takes ``out=``, an array of float64 in C order, which may share memory with the arguments. With û the matrix of
 v ↦ u × v, α = |u|, and right-trivialised differentials, d/dε Ψ(u + εv) = dΨ_u(v) Ψ(u):
 
-========  ==========================================================
-exp       𝟙 + (sin α/α) û + ((1 − cos α)/α²) û²
-dexp      𝟙 + ((1 − cos α)/α²) û + ((α − sin α)/α³) û²; the left Jacobian of robotics
-dexpinv   𝟙 − û/2 + ((1 − (α/2) cot(α/2))/α²) û²
-cay       𝟙 + (û + û²/2)/(1 + α²/4)
-========  ==========================================================
+==========  ==========================================================
+exp         𝟙 + (sin α/α) û + ((1 − cos α)/α²) û²
+dexp        𝟙 + ((1 − cos α)/α²) û + ((α − sin α)/α³) û²; the left Jacobian of robotics
+dexpinv     𝟙 − û/2 + ((1 − (α/2) cot(α/2))/α²) û²
+cay         𝟙 + (û + û²/2)/(1 + α²/4)
+ccsk        exp(u_i e_i) exp(u_j e_j) exp(u_k e_k); dccskinv is singular at cos u_j = 0
+pade22      (𝟙 − û/2 + û²/12)⁻¹ (𝟙 + û/2 + û²/12), of order 4 to exp; dpade22inv is nowhere singular
+==========  ==========================================================
 
 Errors: :class:`lieflow.ArgumentError` for a shape, a number that is not finite, or a matrix that is no rotation, with
 the place of the element; TypeError for what is not real numbers.
@@ -24,7 +26,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._arrays import MEMBERSHIP, Array, elements, first, into, leading, series, whole
+from ._arrays import MEMBERSHIP, Array, elements, first, into, leading, series, together, whole
 from ._errors import ArgumentError
 from ._lieflow import (
     so3_cay as cay,
@@ -50,14 +52,17 @@ __all__ = [
     "contains",
     "dcay",
     "dcayinv",
+    "dccskinv",
     "dexp",
     "dexpinv",
+    "dpade22inv",
     "exp",
     "exp_on",
     "from_quaternion",
     "from_rotation",
     "hat",
     "log",
+    "pade22",
     "project",
     "random",
     "vee",
@@ -84,11 +89,63 @@ def dexpinv(u: ArrayLike, v: ArrayLike, out: Array | None = None, *, q: int | No
 
 def ccsk(u: ArrayLike, out: Array | None = None, *, order: str = "123") -> Array:
     """Return exp(u_i e_i) exp(u_j e_j) exp(u_k e_k) for the order ijk of the axes, shape (..., 3, 3)."""
+    a = elements("u", u, (3,))
+    i, j, k = (exp(a * np.eye(3)[axis]) for axis in _axes(order))
+    return into(i @ j @ k, out)
+
+
+def _axes(order: str) -> list[int]:
+    """The axes of an order, from 0."""
     if not (isinstance(order, str) and sorted(order) == ["1", "2", "3"]):
         raise ArgumentError("order", repr(order), 'an order of the axes, such as "123" or "321"')
-    a = elements("u", u, (3,))
-    i, j, k = (exp(a * np.eye(3)[int(axis) - 1]) for axis in order)
-    return into(i @ j @ k, out)
+    return [int(axis) - 1 for axis in order]
+
+
+def _both(u: ArrayLike, v: ArrayLike) -> tuple[Array, Array]:
+    """Two arrays of vectors with the same leading axes."""
+    return together("u", elements("u", u, (3,)), 1, "v", elements("v", v, (3,)), 1)
+
+
+def dccskinv(u: ArrayLike, v: ArrayLike, out: Array | None = None, *, order: str = "123") -> Array:
+    """Return dccsk_u⁻¹(v) for the order ijk of the axes, shape (..., 3). Right-trivialised.
+
+    In the frame e_i, e_j, ±e_k it is (v₁ − w sin u_j, v₂ cos u_i + v₃ sin u_i, w), w = (v₃ cos u_i − v₂ sin u_i)/cos u_j.
+    Next to cos u_j = 0, where ccsk is singular, it grows beyond all bounds.
+    """
+    i, j, k = _axes(order)
+    a, b = _both(u, v)
+    sign = 1.0 if (i + 1) % 3 == j else -1.0
+    (s1, c1), (s2, c2) = ((np.sin(x), np.cos(x)) for x in (a[..., i], a[..., j]))
+    v1, v2, v3 = b[..., i], b[..., j], sign * b[..., k]
+    found = np.empty_like(b)
+    with np.errstate(over="ignore", invalid="ignore"):  # told by into
+        w = (c1 * v3 - s1 * v2) / c2
+        found[..., i], found[..., j], found[..., k] = v1 - s2 * w, c1 * v2 + s1 * v3, sign * w
+    return into(found, out)
+
+
+def pade22(u: ArrayLike, out: Array | None = None) -> Array:
+    """Return 𝟙 + (q û + û²/2)/(q² + α²/4), q = 1 − α²/12, α = |u|, shape (..., 3, 3).
+
+    It is the diagonal Padé approximant (2, 2) of exp: its angle is α + O(α⁵).
+    """
+    a = hat(u)
+    with np.errstate(over="ignore", invalid="ignore"):  # told by into
+        square = (a**2).sum((-1, -2), keepdims=True) / 2
+        q = 1.0 - square / 12
+        return into(np.eye(3) + (q * a + a @ a / 2) / (q * q + square / 4), out)
+
+
+def dpade22inv(u: ArrayLike, v: ArrayLike, out: Array | None = None) -> Array:
+    """Return dpade22_u⁻¹(v) = (1 − α²/12) v − u × v/2 + (1 + α²/6)/(12 + α²) (u·v) u, α = |u|, shape (..., 3).
+
+    Right-trivialised.
+    """
+    a, b = _both(u, v)
+    with np.errstate(over="ignore", invalid="ignore"):  # told by into
+        square, dot = (a * a).sum(-1, keepdims=True), (a * b).sum(-1, keepdims=True)
+        found = (1 - square / 12) * b - np.cross(a, b) / 2 + (1 + square / 6) / (12 + square) * dot * a
+    return into(found, out)
 
 
 def as_quaternion(r: ArrayLike, out: Array | None = None, *, scalar_first: bool) -> Array:
