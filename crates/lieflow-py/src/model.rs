@@ -1,7 +1,6 @@
 //! Problems by the name of their kind, and their runs.
 
 use std::sync::Arc;
-use std::time::Instant;
 
 use lieflow::catalog::{MethodSpec, all_methods};
 use lieflow::{RunError, SaveAt, TimeGrid};
@@ -21,7 +20,7 @@ use crate::curve::Curve;
 use crate::error::{argument, refused};
 use crate::field::{self, Raised};
 use crate::run::{
-    EventParts, Fitting, Function, LONGEST, SIGNALS, Settings, Watch, Watched, Watching, save_of,
+    EventParts, Fitting, Function, LONGEST, Settings, Signals, Watch, Watched, Watching, save_of,
 };
 use crate::solve::knots;
 use crate::stepper::Stepper;
@@ -416,12 +415,9 @@ impl Model {
         let method = self.method(py, method)?.0;
         let found = py.detach(|| {
             let mut numbers: Vec<f64> = Vec::with_capacity(self.width() * times.len());
-            let mut asked = Instant::now();
+            let mut signals = Signals::default();
             for (i, &t) in times.iter().enumerate() {
-                if asked.elapsed() >= SIGNALS {
-                    Python::attach(|py| py.check_signals()).map_err(Ok)?;
-                    asked = Instant::now();
-                }
+                signals.ask().map_err(Ok)?;
                 let mut row = match self.model.exact([t0, t]) {
                     None => return Ok(None),
                     Some(row) => row.map_err(|error| Err((i, error)))?,

@@ -21,6 +21,21 @@ use crate::formulas::Formulas;
 /// How often a run asks for signals.
 pub(crate) const SIGNALS: Duration = Duration::from_millis(20);
 
+/// When signals were last asked for.
+#[derive(Default)]
+pub(crate) struct Signals(Option<Instant>);
+
+impl Signals {
+    /// Asks for signals, if that was not just done. An error is that of a signal, such as Ctrl-C.
+    pub(crate) fn ask(&mut self) -> PyResult<()> {
+        if self.0.is_none_or(|last| last.elapsed() >= SIGNALS) {
+            self.0 = Some(Instant::now());
+            Python::attach(|py| py.check_signals())?;
+        }
+        Ok(())
+    }
+}
+
 /// The argument that limits the step size.
 pub(crate) const LONGEST: &str = "max_step";
 
@@ -251,7 +266,7 @@ pub(crate) struct Seen {
     rows: Rows,
     pub(crate) found: Vec<Rows>,
     end: Option<End>,
-    last: Option<Instant>,
+    signals: Signals,
 }
 
 impl Watch {
@@ -313,11 +328,8 @@ impl Seen {
 
     /// Asks for signals now and then.
     pub(crate) fn signals(&mut self, raised: &Raised) {
-        if self.last.is_none_or(|last| last.elapsed() >= SIGNALS) {
-            self.last = Some(Instant::now());
-            if let Err(error) = Python::attach(|py| py.check_signals()) {
-                raised.keep(error);
-            }
+        if let Err(error) = self.signals.ask() {
+            raised.keep(error);
         }
     }
 

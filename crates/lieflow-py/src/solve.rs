@@ -13,7 +13,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::arrays::{Input, output};
-use crate::curve::Curve;
+use crate::curve::{Curve, at_times};
 use crate::error::{argument, refused, words};
 use crate::field::{self, Callable, Raised};
 use crate::formulas::Formulas;
@@ -182,13 +182,18 @@ impl SampledField {
         let out = output(py, (&lead, &[columns]), None, &mut [])?;
         // SAFETY: the array is new.
         let numbers = unsafe { out.as_slice_mut()? };
-        for (i, (t, out)) in t.numbers().iter().zip(numbers.chunks_exact_mut(columns)).enumerate() {
-            let found = self.0.value(*t, out);
-            found.map_err(|lieflow::samples::Outside { span: [first, last], .. }| {
+        let times = t.numbers();
+        at_times(py, times, numbers, |part, numbers| {
+            let mut rows = part.iter().zip(numbers.chunks_exact_mut(columns));
+            rows.try_for_each(|(t, out)| self.0.value(*t, out)).map_err(|outside| {
+                let [first, last] = outside.span;
                 let expected = format!("a time within the samples, from {first} to {last}");
-                argument(py, &format!("t[{i}]"), t.to_string(), expected)
-            })?;
-        }
+                let wrong = |t: &f64| !(first <= *t && *t <= last);
+                let i = times.iter().position(wrong).unwrap_or_default();
+                let name = format!("t[{i}]");
+                Python::attach(|py| argument(py, &name, times[i].to_string(), expected))
+            })
+        })?;
         Ok(out)
     }
 }
