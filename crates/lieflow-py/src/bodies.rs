@@ -1,7 +1,6 @@
 //! Many free rigid bodies at once.
 
-use std::sync::{Mutex, MutexGuard};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use lieflow::ensemble::{Ensemble, EnsembleMethod};
 use lieflow::problems::inertia::impossible;
@@ -11,7 +10,8 @@ use pyo3::prelude::*;
 
 use crate::error::{argument, refused};
 use crate::field::array;
-use crate::stepper::{lock, wait_for};
+use crate::in_turn::InTurn;
+use crate::run::SIGNALS;
 
 /// The methods by name.
 const METHODS: [(&str, EnsembleMethod); 3] = [
@@ -20,18 +20,76 @@ const METHODS: [(&str, EnsembleMethod); 3] = [
     ("rk4-mg", EnsembleMethod::Rk4),
 ];
 
+type Numbers<'py> = Bound<'py, PyArrayDyn<f64>>;
+
+/// The bodies after some steps.
+#[derive(Clone)]
+struct Bodies {
+    now: Ensemble,
+    steps: u64,
+}
+
+impl Bodies {
+    fn momenta(&self) -> Vec<f64> {
+        let all = (0..self.now.len()).filter_map(|i| self.now.momentum(i));
+        all.flat_map(|m| [m.x, m.y, m.z]).collect()
+    }
+    fn attitudes(&self) -> Vec<f64> {
+        let all = (0..self.now.len()).filter_map(|i| self.now.attitude(i));
+        all.flat_map(|g| g.transpose().data.0.concat()).collect()
+    }
+    fn energies(&self) -> Vec<f64> {
+        (0..self.now.len()).filter_map(|i| self.now.energy(i)).collect()
+    }
+}
+
 /// Many free rigid bodies.
 #[pyclass(frozen, module = "lieflow._lieflow")]
 pub(crate) struct FreeBodies {
-    bodies: Mutex<Ensemble>,
+    bodies: InTurn<Bodies>,
+    /// The call that takes steps.
+    advancing: InTurn<()>,
     count: usize,
     has_attitudes: bool,
     impossible: Option<String>,
 }
 
 impl FreeBodies {
-    fn bodies(&self, py: Python<'_>) -> MutexGuard<'_, Ensemble> {
-        wait_for(py, &self.bodies)
+    /// The array of attitudes, if there are any.
+    fn rotations<'py>(&self, py: Python<'py>, numbers: &[f64]) -> PyResult<Option<Numbers<'py>>> {
+        self.has_attitudes.then(|| array(py, &[self.count, 3, 3], numbers)).transpose()
+    }
+
+    /// Takes steps in parts of about the time that signals may wait. The bits do not depend on the parts. After an error the
+    /// bodies are as before.
+    fn take_steps(
+        &self,
+        py: Python<'_>,
+        (method, h): (EnsembleMethod, f64),
+        steps: u64,
+        threads: usize,
+    ) -> PyResult<()> {
+        let before = self.bodies.with(py, |bodies| py.detach(|| bodies.clone()))?;
+        let (mut left, mut part) = (steps, 1);
+        loop {
+            let count = left.min(part);
+            let done = self.bodies.with(py, |bodies| {
+                let clock = Instant::now();
+                let done = py.detach(|| bodies.now.advance(method, h, count, threads));
+                match done {
+                    Ok(()) => bodies.steps += count,
+                    Err(_) => *bodies = before.clone(),
+                }
+                done.map(|()| clock.elapsed())
+            })?;
+            let took = done.map_err(|error| refused(py, "bodies", &error))?;
+            left -= count;
+            if left == 0 {
+                return Ok(());
+            }
+            part = if took < SIGNALS { 2 * part } else { (part / 2).max(1) };
+            py.check_signals()?;
+        }
     }
 }
 
@@ -58,7 +116,9 @@ impl FreeBodies {
         let (count, has_attitudes) = (momentum.len(), attitude.is_some());
         let mut all = inertia.iter().enumerate();
         let impossible = all.find_map(|(i, j)| Some(format!("inertia[{i}]: {}", impossible(*j)?)));
-        Ok(FreeBodies { bodies: Mutex::new(bodies), count, has_attitudes, impossible })
+        let (bodies, advancing) = (Bodies { now: bodies, steps: 0 }, InTurn::new(()));
+        let bodies = InTurn::new(bodies);
+        Ok(FreeBodies { bodies, advancing, count, has_attitudes, impossible })
     }
     /// What is wrong with the moments of the first body that cannot be.
     #[getter]
@@ -78,42 +138,26 @@ impl FreeBodies {
             let names = METHODS.map(|(name, _)| name).join(", ");
             argument(py, "method", format!("{method:?}"), format!("one of {names}"))
         })?;
-        // In parts of about this time, with a look at Ctrl-C after each. The bits do not depend on the parts.
-        const PART: Duration = Duration::from_millis(20);
-        let refuse = |error| refused(py, "bodies", &error);
-        py.detach(|| {
-            let mut bodies = lock(&self.bodies);
-            let (mut left, mut part) = (steps, 1);
-            loop {
-                let start = Instant::now();
-                let now = left.min(part);
-                bodies.advance(*known, h, now, threads).map_err(Err)?;
-                left -= now;
-                if left == 0 {
-                    return Ok(());
-                }
-                part = if start.elapsed() < PART { 2 * part } else { (part / 2).max(1) };
-                Python::attach(|py| py.check_signals()).map_err(Ok)?;
-            }
-        })
-        .map_err(|error: Result<PyErr, _>| error.unwrap_or_else(refuse))
+        self.advancing.with(py, |()| self.take_steps(py, (*known, h), steps, threads))?
     }
-    fn momentum<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        let bodies = self.bodies(py);
-        let all = (0..self.count).filter_map(|i| bodies.momentum(i));
-        let numbers: Vec<f64> = all.flat_map(|m| [m.x, m.y, m.z]).collect();
-        array(py, &[self.count, 3], &numbers)
+    /// The steps of all calls.
+    #[getter]
+    fn nsteps(&self, py: Python<'_>) -> PyResult<u64> {
+        self.bodies.with(py, |bodies| bodies.steps)
     }
-    fn attitude<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArrayDyn<f64>>>> {
-        let bodies = self.bodies(py);
-        let all = (0..self.count).filter_map(|i| bodies.attitude(i));
-        let numbers: Vec<f64> = all.flat_map(|g| g.transpose().data.0.concat()).collect();
-        let array = || array(py, &[self.count, 3, 3], &numbers);
-        self.has_attitudes.then(array).transpose()
+    fn momentum<'py>(&self, py: Python<'py>) -> PyResult<Numbers<'py>> {
+        array(py, &[self.count, 3], &self.bodies.with(py, |bodies| bodies.momenta())?)
     }
-    fn energy<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        let bodies = self.bodies(py);
-        let numbers: Vec<f64> = (0..self.count).filter_map(|i| bodies.energy(i)).collect();
-        array(py, &[self.count], &numbers)
+    fn attitude<'py>(&self, py: Python<'py>) -> PyResult<Option<Numbers<'py>>> {
+        self.rotations(py, &self.bodies.with(py, |bodies| bodies.attitudes())?)
+    }
+    /// The momenta and the attitudes after the same step.
+    fn state<'py>(&self, py: Python<'py>) -> PyResult<(Numbers<'py>, Option<Numbers<'py>>)> {
+        let read = |bodies: &mut Bodies| (bodies.momenta(), bodies.attitudes());
+        let (momenta, attitudes) = self.bodies.with(py, read)?;
+        Ok((array(py, &[self.count, 3], &momenta)?, self.rotations(py, &attitudes)?))
+    }
+    fn energy<'py>(&self, py: Python<'py>) -> PyResult<Numbers<'py>> {
+        array(py, &[self.count], &self.bodies.with(py, |bodies| bodies.energies())?)
     }
 }

@@ -12,6 +12,7 @@ mod expm;
 mod field;
 mod formulas;
 mod group;
+mod in_turn;
 mod model;
 mod run;
 mod scene;

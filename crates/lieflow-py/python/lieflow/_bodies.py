@@ -53,9 +53,18 @@ class FreeBodies:
     def advance(self, method: str, h: float, steps: int, threads: int = 1) -> None:
         """Take steps of the size h with "rkmk4 exp", "rkmk4 cay" or "rk4-mg". The results are the same for any threads.
 
+        After an error, such as that of a step which one body cannot take, all bodies are as before the call. After Ctrl-C all of
+        them are at the end of the same step, and :attr:`nsteps` tells which. Another thread that reads the bodies during the
+        call sees them after some of the steps, all of them after the same.
+
         Cost: some 10 ns for each body and step with momenta alone, on one core with AVX-512.
         """
         self._bodies.advance(name_of("method", method), number("h", h), whole("steps", steps), whole("threads", threads, 1))
+
+    @property
+    def nsteps(self) -> int:
+        """The steps that the bodies have taken since this object was made."""
+        return self._bodies.nsteps
 
     @property
     def momentum(self) -> Array:
@@ -84,4 +93,4 @@ class FreeBodies:
         return f"<lieflow.FreeBodies: {len(self)} bodies>"
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return (FreeBodies, (self._inertia, self.momentum, self.attitude))
+        return (FreeBodies, (self._inertia, *self._bodies.state()))
