@@ -1,6 +1,7 @@
 //! Adaptive step size: accepted steps, and the choice of the first step.
 
 use core::cell::Cell;
+use core::sync::atomic::Ordering;
 
 use super::control::{Controller, StepControl};
 use super::points::AnyPoints;
@@ -77,6 +78,7 @@ impl Timeline {
     ) -> Result<(), RunError> {
         let Pacer::ByError(Chooser { h, wall, controller, .. }) = self.pacer else { return Ok(()) };
         let mut before = (h, wall, controller);
+        self.keep_counts();
         let done = self.attempt_steps(run, stop, reach, &mut before);
         if let (Err(_), Pacer::ByError(chooser)) = (&done, &mut self.pacer) {
             (chooser.h, chooser.wall, chooser.controller) = before;
@@ -129,15 +131,18 @@ impl Timeline {
             let Pacer::ByError(chooser) = &self.pacer else { return Ok(()) };
             let sizes = Sizes::new(chooser, stop, self.largest_size(1.0));
             let streak = self.streak(chooser, (h, end), reach, &sizes);
+            let reused = self.cancel.is_some().then(|| run.points().reused());
             let tried = run.attempt(step, end, &streak);
-            self.attempted(tried.accepted + 1);
             let mut size = size;
             if tried.accepted > 0 {
+                self.attempted(tried.accepted);
                 h = tried.size.abs();
                 self.went_on(&tried, &sizes);
                 *before = (Some(h), None, sizes.controller);
+                self.keep_counts();
                 size = (tried.end - self.t).abs();
             }
+            self.attempted(1);
             let Attempts { step, end, ratio, .. } = tried;
             if ratio.as_ref().is_ok_and(|ratio| self.is_noise(run.points(), *ratio, size)) {
                 continue; // the same attempt: its end is lost
@@ -167,6 +172,17 @@ impl Timeline {
                         _ => next,
                     });
                     return Ok(());
+                }
+                Err(error) if self.is_cancelled() => {
+                    let error = self.underflow(h, Some(error));
+                    // The last attempt took one value of f at most from the step before it.
+                    let reused = reused.map(|n| run.points().reused().wrapping_sub(n).min(1));
+                    if let (Some(cancel), Some(again)) = (&self.cancel, reused) {
+                        let evaluations = cancel.counts.evaluations;
+                        let evaluations = evaluations.map(|n| n.wrapping_add(again));
+                        self.stats = Stats { evaluations, ..cancel.counts };
+                    }
+                    return Err(error);
                 }
                 rejected => {
                     self.stats.rejected += 1;
@@ -278,6 +294,19 @@ impl Timeline {
         *accepted += tried.accepted;
         *smallest_step = smallest_step.min(least);
         *largest_step = largest_step.max(largest);
+    }
+
+    /// Is no attempt to follow a failed one?
+    fn is_cancelled(&self) -> bool {
+        self.cancel.as_ref().is_some_and(|cancel| cancel.flag.load(Ordering::Relaxed))
+    }
+
+    /// Keeps the counts before an attempt that may be cancelled.
+    #[inline]
+    fn keep_counts(&mut self) {
+        if let Some(cancel) = &mut self.cancel {
+            cancel.counts = self.stats;
+        }
     }
 
     /// True if steps of any size have no error.

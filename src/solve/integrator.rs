@@ -1,5 +1,7 @@
 //! A run that the caller takes step by step, and whose state can be read and set.
 
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 use super::drive::Patience;
@@ -8,7 +10,7 @@ use super::points::{AnyPoints, Estimator, Points};
 use super::stats::{RunError, Stats};
 use super::stops::Stop;
 use super::streak::{Alone, Reach};
-use super::timeline::{Looked, Pace, Timeline};
+use super::timeline::{Cancel, Looked, Pace, Timeline};
 use crate::error::Error;
 use crate::methods::{Method, Step};
 use crate::problems::{PointOf, Problem};
@@ -84,6 +86,12 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
     /// The last step, from t − h to t; its size is 0 before the first.
     pub fn last_step(&self) -> Step<f64> {
         self.times.last
+    }
+
+    /// Ends a call after a failed attempt while the flag is set, as by an f that failed finally and gives NaN. This attempt does
+    /// not count in the statistics, and the next call goes on with it.
+    pub fn cancel(&mut self, flag: Arc<AtomicBool>) {
+        self.times.cancel = Some(Box::new(Cancel { flag, counts: self.times.stats }));
     }
 
     /// Takes one step, at most to the end of the span. Returns the time.

@@ -1,5 +1,8 @@
 //! The times of a run: its steps, and the places within them. This part of the driver knows numbers only.
 
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
 use super::control::{Controller, StepControl};
 use super::grid::TimeGrid;
 use super::noise::Noise;
@@ -95,6 +98,15 @@ pub(super) struct Timeline {
     pub(super) cadence: Cadence,
     pub(super) stats: Stats,
     pub(super) facts: Facts,
+    pub(super) cancel: Option<Box<Cancel>>,
+}
+
+/// Who cancels a run.
+pub(super) struct Cancel {
+    /// While it is set, a failed attempt is the last one, and does not count.
+    pub(super) flag: Arc<AtomicBool>,
+    /// The statistics before that attempt.
+    pub(super) counts: Stats,
 }
 
 /// n + more, if both are counted.
@@ -152,6 +164,7 @@ impl Timeline {
             cadence,
             stats,
             facts,
+            cancel: None,
         }
     }
 

@@ -12,7 +12,7 @@ use pyo3::types::{PyFloat, PyList, PyTuple};
 #[derive(Default)]
 pub(crate) struct Raised {
     first: Mutex<Option<PyErr>>,
-    pub(crate) stop: AtomicBool,
+    pub(crate) stop: Arc<AtomicBool>,
     calls: AtomicU64,
 }
 
@@ -170,7 +170,8 @@ fn read_value(
 pub(crate) fn of_callable(f: Callable, shape: &[usize]) -> Arc<OwnField> {
     let shape = shape.to_vec();
     Arc::new(move |t, y, v| {
-        f.raised.calls.fetch_add(1, Ordering::Relaxed);
+        let called = !f.raised.stop.load(Ordering::Relaxed);
+        f.raised.calls.fetch_add(u64::from(called), Ordering::Relaxed);
         f.call(t, y, |value| read_value(value, ("f", t), &shape, v)).is_some()
     })
 }

@@ -307,7 +307,7 @@ impl Model {
             stops: settings.stops(),
             max_steps: settings.max_steps,
             events: events.iter().map(|event| self.event(event)).collect(),
-            cancel: Some(&raised.stop),
+            cancel: Some(&*raised.stop),
             curve: settings.dense_output.then_some(CurvePlace(&mut curve)),
             start,
             ..Plan::new(steps, save)
@@ -468,7 +468,7 @@ impl Model {
         let numbers = || self.numbers(&spec, start);
         let steps = settings.steps(py, t_span, (orders, numbers), "Integrator")?;
         let (stops, max_steps) = (settings.stops(), settings.max_steps);
-        let run = StepByStep { steps, stops, max_steps };
+        let run = StepByStep { steps, stops, max_steps, cancel: None };
         let run = self.model.stepper(&spec, start, run);
         Stepper::new(py, run, &[self.width()], (Arc::default(), false))
     }

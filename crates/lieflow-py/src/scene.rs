@@ -92,7 +92,7 @@ impl Scene {
         self.0.forget_losses();
         let (done, lost) = py.detach(|| {
             let plan = match self.0.plan(model.schema()) {
-                Ok(plan) => Plan { cancel: Some(&raised.stop), ..plan },
+                Ok(plan) => Plan { cancel: Some(&*raised.stop), ..plan },
                 Err(error) => return (Err(error.into()), None),
             };
             let mut watcher = Watching { callback: None, raised: &raised, seen: &mut seen };

@@ -114,7 +114,8 @@ impl Space {
         let raised = Arc::new(Raised::default());
         let ready = Ready::new(py, self, field, method, (t_span, &y0, &settings), &raised)?;
         let (stops, max_steps) = (settings.stops(), settings.max_steps);
-        let run = StepByStep { steps: ready.steps, stops, max_steps };
+        let cancel = Some(raised.stop.clone());
+        let run = StepByStep { steps: ready.steps, stops, max_steps, cancel };
         let run = ready.problem.stepper(&ready.spec, &y0, run);
         if let Some(error) = raised.take() {
             return Err(error);
@@ -257,6 +258,10 @@ impl Ready {
                 field::of_callable(f, space.value())
             }
         };
+        if t_span[0] == t_span[1] {
+            // A run without steps does not call f.
+            field(t_span[0], y0, &mut vec![0.0; space.value().iter().product()]);
+        }
         let refuse = |error: Error| refused(py, "fun", &error);
         let problem = space.problem(field, settings.linear).map_err(refuse)?;
         let orders = |spec: &MethodSpec| {
@@ -328,7 +333,7 @@ fn drive(
         stops: settings.stops(),
         max_steps: settings.max_steps,
         events: events.collect(),
-        cancel: Some(&raised.stop),
+        cancel: Some(&*raised.stop),
         curve: settings.dense_output.then_some(CurvePlace(&mut curve)),
         ..Plan::new(ready.steps.clone(), save)
     };

@@ -219,3 +219,42 @@ def test_a_state_off_m_is_told_by_its_name():
         with pytest.raises(lf.ArgumentError, match=r"^y: a point at a relative distance of 8.0e0 from SO\(3\), expected at most 1e-6$"):
             setattr(run, name, value)
     assert np.array_equal(run.y, np.eye(3))
+
+
+@pytest.mark.parametrize("method", ["rkmk dop853", "rkmk dopri5", "rkmk bs3 cay", "cf4"])
+@pytest.mark.parametrize("by", ["step", "advance_to"])
+def test_an_attempt_in_which_f_raised_does_not_count(method, by):
+    def taken(broken_at):
+        calls = 0
+
+        def f(t, y):
+            nonlocal calls
+            calls += 1
+            if calls in broken_at:
+                raise ZeroDivisionError
+            return [np.sin(3 * t), y[0, 1], 1.0]
+
+        run = lf.Integrator(f, method, (0, 10), np.eye(3), rtol=1e-6, **ROTATION)
+        raised = 0
+        while run.t < 4:
+            try:
+                run.step() if by == "step" else run.advance_to(4.0)
+            except ZeroDivisionError:
+                raised += 1
+        assert raised == len(broken_at)
+        return run, calls
+
+    (run, calls), (broken, more) = taken(()), taken((2, 3, 50, 77, 78))
+    assert run.nfev == calls and broken.nfev <= more
+    assert (broken.t, broken.nsteps, broken.nrejected) == (run.t, run.nsteps, run.nrejected)
+    if by == "step":
+        assert broken.nfev == run.nfev and np.array_equal(broken.y, run.y)
+
+
+def test_f_is_checked_where_a_span_is_empty():
+    for f, error in ((lambda t, y: "nonsense", TypeError), (lambda t, y: [1.0, 2.0], TypeError), (lambda t, y: 1 / 0, ZeroDivisionError)):
+        for make in (lf.solve_ivp, lambda f, span, y, **keys: lf.Integrator(f, None, span, y, **keys)):
+            with pytest.raises(error):
+                make(f, (3, 3), np.eye(3), **ROTATION)
+    r = lf.solve_ivp(lambda t, y: [0, 0, 1.0], (3, 3), np.eye(3), **ROTATION)
+    assert r.success and r.nfev == 1 and np.array_equal(r.y_end, np.eye(3))

@@ -162,7 +162,11 @@ class Integrator:
 
     @property
     def nfev(self) -> int | None:
-        """The evaluations of f; None if the method does not count them."""
+        """The evaluations of f; None if the method does not count them.
+
+        After an exception of f the run is as before the step that failed. Its calls of f do not count, nor is it a rejected
+        attempt.
+        """
         calls = self._run.stats()[0]
         return None if calls is None else calls + self._checks
 

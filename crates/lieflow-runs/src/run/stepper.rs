@@ -1,6 +1,7 @@
 //! Runs that the caller takes step by step, of a problem of any type.
 
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use lieflow::catalog::MethodSpec;
@@ -74,11 +75,13 @@ pub struct StepByStep {
     pub stops: Stops,
     /// The limit of the attempts of a call, where it is not that of the library.
     pub max_steps: Option<u64>,
+    /// While it is set, no attempt follows a failed one.
+    pub cancel: Option<Arc<AtomicBool>>,
 }
 
 impl From<Steps> for StepByStep {
     fn from(steps: Steps) -> Self {
-        StepByStep { steps, stops: Stops::default(), max_steps: None }
+        StepByStep { steps, stops: Stops::default(), max_steps: None, cancel: None }
     }
 }
 
@@ -135,7 +138,7 @@ pub(super) fn stepper_by<P: Runnable>(
     spec: &MethodSpec,
     problem: &Arc<P>,
     y: PointOf<P>,
-    StepByStep { steps, stops, max_steps }: StepByStep,
+    StepByStep { steps, stops, max_steps, cancel }: StepByStep,
     points: Points<P>,
 ) -> Result<Box<dyn Stepper>, RunError>
 where
@@ -152,7 +155,10 @@ where
         Some(attempts) => solve.max_steps(attempts),
         None => solve,
     };
-    let run = solve.integrator(y.clone())?;
+    let mut run = solve.integrator(y.clone())?;
+    if let Some(flag) = cancel {
+        run.cancel(flag);
+    }
     Ok(Box::new(Typed { run, at: y, points }))
 }
 
