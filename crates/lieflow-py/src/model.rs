@@ -6,8 +6,8 @@ use lieflow::catalog::{MethodSpec, all_methods};
 use lieflow::{RunError, SaveAt, TimeGrid};
 use lieflow_model::kinds::{KINDS, named};
 use lieflow_model::problem::{
-    self, CurvePlace, EventPlan, Kept, KeyInfo, Layer, Orders, Outcome, Plan, StepByStep, Steps,
-    Stops,
+    self, CurvePlace, EventPlan, KNOTS_MAX, Kept, KeyInfo, Layer, Orders, Outcome, Plan,
+    StepByStep, Steps, Stops,
 };
 use lieflow_model::reader::{ReadError, Shape, Tree};
 use lieflow_model::scene::{Columns, OnRows, RowFormula};
@@ -165,12 +165,17 @@ impl Problem {
     fn knots(&self, py: Python<'_>, t_span: [f64; 2]) -> PyResult<(Vec<f64>, Vec<f64>)> {
         if let Some(samples) = self.problem.samples() {
             knots(py, samples, t_span)?;
-        } else if t_span[1].is_infinite() && self.problem.knots([0.0; 2]).is_some() {
+        }
+        let stops = self.problem.knots(t_span).unwrap_or_default();
+        if stops.len() > KNOTS_MAX {
             let [start, end] = t_span;
-            let expected = "a finite end: f jumps again and again";
+            let expected = match end.is_finite() {
+                true => format!("a span in which f jumps at most {KNOTS_MAX} times"),
+                false => "a finite end: f jumps again and again".into(),
+            };
             return Err(argument(py, "t_span", format!("({start}, {end})"), expected));
         }
-        let Stops { jumps, kinks } = self.problem.knots(t_span).unwrap_or_default();
+        let Stops { jumps, kinks } = stops;
         Ok((jumps, kinks))
     }
     /// The problem with these quantities on a layer. `events` are formulas of its columns, each with its path.

@@ -432,3 +432,16 @@ def test_what_stands_for_a_name_or_a_quaternion():
     by_matrix = lf.RigidBody(**keys, attitude=turn)
     ends = [lf.solve_ivp(p, (0, 1), quantities="attitude").y.attitude[-1] for p in (body, by_matrix)]
     assert np.allclose(*ends, atol=1e-6)
+
+
+def test_a_span_with_too_many_jumps_is_refused():
+    magnet = {"kind": "quadrupole", "length": 0.5, "k": 1.0}
+    line = lf.BeamLine(elements=[magnet, {"kind": "drift", "length": 1.0}], particle=[1e-3, 0, 0, 0])
+    event = lf.Event("x", terminal=1)
+    for end, expected in ((1e7, "at most 1000000 times"), (np.inf, "a finite end: f jumps again and again")):
+        with pytest.raises(lf.ArgumentError, match=f"t_span: .*{expected}"):
+            lf.solve_ivp(line, (0, end), events=event)
+    # A pulse is at few times.
+    flip = lf.Schrodinger(energies=[0, 0], coupling=[[0, 0.5], [0.5, 0]], pulse=[20, 1], amplitudes=[1, 0])
+    run = lf.solve_ivp(flip, (0, np.inf), events=lf.Event("t - 40", terminal=1), quantities=["populations"])
+    assert run.success and np.abs(run.populations[-1] - np.sin(0.5 * np.sqrt(np.pi) + [np.pi / 2, 0]) ** 2).max() < 1e-9
