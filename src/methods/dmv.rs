@@ -10,8 +10,7 @@
 //! and κ are constant along the motion. The coefficients depend on J and are computed once.
 //!
 //! Preserves: energy, |m|, gm and the group to rounding at every order, the Poisson structure of m (order 2 also the
-//! symplectic structure of T*SO(3)), time symmetry. It is the
-//! exact motion with a changed time. Newton's iteration converges for h|m|/min J < 1. From there on it may fail for some
+//! symplectic structure of T*SO(3)), time symmetry. It is the exact motion with a changed time. Newton's iteration converges for h|m|/min J < 1. From there on it may fail for some
 //! m with [`StepError::NewtonDidNotConverge`]. Cost: 3 to 6 Newton iterations of one 3×3 solve each, one cay, and at
 //! most 30 multiplications for σ and δ; no trigonometric function.
 //! Source: J. Moser & A. P. Veselov, Comm. Math. Phys. 139 (1991); R. McLachlan & A. Zanna, Found.
@@ -26,7 +25,7 @@ use crate::error::{Error, StepError};
 use crate::groups::{LieAlgebra, LieGroup, So3};
 use crate::maps::Cay;
 use crate::problems::{FreeBody, PointOf, ScalarOf};
-use crate::scalar::Real;
+use crate::scalar::{Real, power_of_two};
 
 /// The preprocessed discrete Moser–Veselov method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,7 +68,7 @@ impl DmvWork {
     #[rustfmt::skip]
     fn new(inverse_inertia: Vector3<f64>) -> Self {
         let i = [0, 1, 2].map(|k| 1.0 / inverse_inertia[k]);
-        let unit = i[0].max(i[1]).max(i[2]).log2().round().clamp(-1000.0, 1000.0).exp2();
+        let unit = power_of_two(i[0].max(i[1]).max(i[2]));
         let i = i.map(|i| i / unit);
         let d = i[0] * i[1] * i[2];
         let s = |k: i32| i.iter().map(|i| i.powi(k)).sum::<f64>();

@@ -13,7 +13,7 @@ use super::{Embedded, Facts, MapCounts, Method, Step, Symmetric};
 use crate::error::{Error, StepError};
 use crate::groups::{LieAlgebra, So3};
 use crate::problems::{Exact, Frame, FreeBody, PointOf, ScalarOf};
-use crate::scalar::Real;
+use crate::scalar::{Real, power_of_two};
 use crate::space::Metric;
 use crate::tolerance::Tolerance;
 
@@ -43,51 +43,34 @@ impl ExactWork {
         Ok(&self.orbit)
     }
 
-    /// The change of the momentum from `start` to `end`, with the length and the energy of `start`, by a step of Newton's
-    /// iteration.
+    /// The change from `old` to `new` with the length and the energy of `old`, by a step of Newton's iteration. Both are about
+    /// 1 long.
     ///
     /// The energy is taken relative to that of a rotation about the axis of the largest component. All differences are those
     /// over the step, so that their rounding is relative to it.
     #[inline]
-    fn change(&self, start: &Vector3<f64>, end: &Vector3<f64>) -> Vector3<f64> {
-        if start.amax() == 0.0 {
-            return Vector3::zeros();
-        }
-        let size = size_of(start);
-        let [old, new] = [start, end].map(|m| m / size);
+    fn change(&self, old: &Vector3<f64>, new: &Vector3<f64>) -> Vector3<f64> {
         let change = new - old;
         let gone = -change.component_mul(&(old + new));
         let squared = new.norm_squared();
         let axis = self.inertia[new.iamax()];
         let rates = Vector3::from(self.inertia).map(|inertia| (axis - inertia) / inertia);
-        let mean = rates.dot(&new.component_mul(&new)) / squared;
+        let mean = rates.dot(&new.component_mul(new)) / squared;
         let rates = rates.add_scalar(-mean);
         let across = new.component_mul(&rates);
         let steep = across.norm_squared();
         let along = new * (0.5 * gone.sum() / squared);
         let across = if steep > 0.0 { across * (0.5 * gone.dot(&rates) / steep) } else { across };
-        (change + (along + across)) * size
+        change + (along + across)
     }
 }
 
-/// A power of two near the size of m, so that m / size has the digits of m; 1 for m = 0.
-fn size_of(m: &Vector3<f64>) -> f64 {
-    let exponent = m.amax().log2().round();
-    if exponent.is_finite() { exponent.clamp(-1000.0, 1000.0).exp2() } else { 1.0 }
-}
-
-/// D with a rotation 𝟙 + D that takes m to m + change, (𝟙 + D)ᵀ m. Its rounding is relative to D.
+/// D with a rotation 𝟙 + D that takes m to m + change = (𝟙 + D)ᵀ m. Its rounding is relative to D.
 #[inline]
 fn corrected(d: Matrix3<f64>, m: &Vector3<f64>, change: &Vector3<f64>) -> Matrix3<f64> {
     let off = d + d.transpose() + d.tr_mul(&d);
     let d = d - (off + d * off) * 0.5;
-    let size = size_of(m);
-    let [m, change] = [m, change].map(|m| m / size);
-    let squared = m.norm_squared();
-    if squared == 0.0 {
-        return d;
-    }
-    let gap = (d.tr_mul(&m) - change).cross(&(m + change)) / squared;
+    let gap = (d.tr_mul(m) - change).cross(&(m + change)) / m.norm_squared();
     let gap = gap.cross_matrix();
     d - (gap + d * gap)
 }
@@ -123,9 +106,14 @@ where
         // Both are right to ε, but the same h rounds them the same way in every step: a step of Newton's
         // iteration each takes them back to |m| and the energy, and to the group. The rotation takes m to m⁺, as a problem
         // needs it whose state is the attitude alone.
-        let change = work.change(&before, &next);
-        let next = before + change;
-        let turn = Matrix3::identity() + corrected(turn - Matrix3::identity(), &before, &change);
+        let size = power_of_two(before.amax());
+        let (next, turn) = match [before, next].map(|m| m / size) {
+            [old, _] if old.amax() == 0.0 => (next, turn),
+            [old, new] => {
+                let (change, one) = (work.change(&old, &new), Matrix3::identity());
+                ((old + change) * size, one + corrected(turn - one, &old, &change))
+            }
+        };
         let group = So3::<f64>::new();
         if !(group.is_finite(&next) && turn.iter().all(|x| x.is_finite())) {
             return Err(failed);

@@ -172,3 +172,9 @@ pub(crate) fn larger<S: Real>(a: S, b: S) -> S {
     let [c] = (b - a).branch(0.0, || [a], || [b]);
     c
 }
+
+/// The power of two at or below x ≥ 0, within 2^±1000. A quotient by it has the digits of what it divides.
+pub(crate) fn power_of_two(x: f64) -> f64 {
+    const LOW: f64 = f64::from_bits((1023 - 1000) << 52);
+    f64::from_bits(x.to_bits() & (0x7ff << 52)).clamp(LOW, 1.0 / LOW)
+}

@@ -28,7 +28,7 @@ use crate::elliptic::{Ladder, rc, rf, rj};
 use crate::error::{Error, StepError};
 use crate::groups::So3;
 use crate::maps::{CoordinateMap, Exp};
-use crate::scalar::{ROUND, Trig};
+use crate::scalar::{ROUND, Trig, power_of_two};
 use crate::so3::cross;
 
 /// The exact motion of a free rigid body: m(t) and g(t) at any time t, without steps.
@@ -107,12 +107,6 @@ struct Fast {
 /// Below this 1 − k² the orbit is treated as the separatrix. It would return to the middle axis only after more than
 /// 300 of its time constants 1/λ.
 const SEPARATRIX: f64 = 1e-280;
-
-/// The power of two at or below x ≥ 0, within 2^±1000.
-fn power_of_two(x: f64) -> f64 {
-    const LOW: f64 = f64::from_bits((1023 - 1000) << 52);
-    f64::from_bits(x.to_bits() & (0x7ff << 52)).clamp(LOW, 1.0 / LOW)
-}
 
 impl Exact {
     /// Makes a motion from the principal moments of inertia, the body momentum and the attitude at t = 0.
