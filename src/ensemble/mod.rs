@@ -84,19 +84,47 @@ impl<const ROWS: usize> Block<ROWS> {
         Block { inverse: ZERO, square: [0.0; BLOCK], state: State { m: ZERO, g: [ZERO; ROWS] } };
 }
 
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 enum Blocks {
     Momentum(Vec<Block<0>>),
     Attitude(Vec<Block<3>>),
 }
 
+impl Clone for Blocks {
+    fn clone(&self) -> Self {
+        match self {
+            Blocks::Momentum(blocks) => Blocks::Momentum(blocks.clone()),
+            Blocks::Attitude(blocks) => Blocks::Attitude(blocks.clone()),
+        }
+    }
+    fn clone_from(&mut self, other: &Self) {
+        match (self, other) {
+            (Blocks::Momentum(blocks), Blocks::Momentum(other)) => blocks.clone_from(other),
+            (Blocks::Attitude(blocks), Blocks::Attitude(other)) => blocks.clone_from(other),
+            (blocks, other) => *blocks = other.clone(),
+        }
+    }
+}
+
 /// Many free rigid bodies, with or without attitudes. Without them no attitude is stored or integrated.
-#[derive(Clone, Debug)]
+///
+/// `clone_from` copies into bodies that are as many without allocating: a caller can go back to them after an error.
+#[derive(Debug)]
 pub struct Ensemble {
     len: usize,
     blocks: Blocks,
     /// Steps since g and m were last corrected.
     age: u64,
+}
+
+impl Clone for Ensemble {
+    fn clone(&self) -> Self {
+        Ensemble { blocks: self.blocks.clone(), ..*self }
+    }
+    fn clone_from(&mut self, other: &Self) {
+        (self.len, self.age) = (other.len, other.age);
+        self.blocks.clone_from(&other.blocks);
+    }
 }
 
 impl Ensemble {

@@ -251,3 +251,34 @@ fn what_is_refused() {
     assert!(all_with_g.attitude(100).is_none() && all_with_g.momentum(usize::MAX).is_none());
     assert!(Ensemble::new(&[], &[]).expect("none").advance(EnsembleMethod::Rk4, 0.1, 9, 4).is_ok());
 }
+
+/// Bodies that are copied into others are these, whatever the others were.
+#[test]
+fn bodies_are_copied_into_others() {
+    let of = |n: usize, attitudes: bool| {
+        let inertia = vec![[1.0, 2.0, 3.0]; n];
+        let momentum: Vec<[f64; 3]> = (0..n).map(|i| [0.1 * i as f64, 2.0, 0.3]).collect();
+        let bodies = Ensemble::new(&inertia, &momentum).expect("bodies");
+        match attitudes {
+            true => bodies.with_attitudes(&vec![Matrix3::identity(); n]).expect("attitudes"),
+            false => bodies,
+        }
+    };
+    for (n, attitudes) in [(1, false), (130, false), (130, true)] {
+        let mut bodies = of(n, attitudes);
+        bodies.advance(EnsembleMethod::Rkmk4Exp, 0.1, 3, 1).expect("steps");
+        for mut other in [of(130, false), of(130, true), of(7, true)] {
+            other.clone_from(&bodies);
+            // Both are corrected in the same step.
+            let mut next = bodies.clone();
+            for bodies in [&mut other, &mut next] {
+                bodies.advance(EnsembleMethod::Rkmk4Exp, 0.1, 70, 1).expect("steps");
+            }
+            assert_eq!(other.len(), n);
+            for i in 0..n + 1 {
+                assert_eq!(other.momentum(i), next.momentum(i));
+                assert_eq!(other.attitude(i), next.attitude(i));
+            }
+        }
+    }
+}

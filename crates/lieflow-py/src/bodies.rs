@@ -47,8 +47,8 @@ impl Bodies {
 #[pyclass(frozen, module = "lieflow._lieflow")]
 pub(crate) struct FreeBodies {
     bodies: InTurn<Bodies>,
-    /// The call that takes steps.
-    advancing: InTurn<()>,
+    /// The bodies before the call that takes steps.
+    before: InTurn<Bodies>,
     count: usize,
     has_attitudes: bool,
     impossible: Option<String>,
@@ -65,20 +65,26 @@ impl FreeBodies {
     fn take_steps(
         &self,
         py: Python<'_>,
+        before: &mut Bodies,
         (method, h): (EnsembleMethod, f64),
         steps: u64,
         threads: usize,
     ) -> PyResult<()> {
-        let before = self.bodies.with(py, |bodies| py.detach(|| bodies.clone()))?;
         let (mut left, mut part) = (steps, 1);
         loop {
             let count = left.min(part);
             let done = self.bodies.with(py, |bodies| {
                 let clock = Instant::now();
-                let done = py.detach(|| bodies.now.advance(method, h, count, threads));
+                let done = py.detach(|| {
+                    if left == steps {
+                        before.now.clone_from(&bodies.now);
+                        before.steps = bodies.steps;
+                    }
+                    bodies.now.advance(method, h, count, threads)
+                });
                 match done {
                     Ok(()) => bodies.steps += count,
-                    Err(_) => *bodies = before.clone(),
+                    Err(_) => core::mem::swap(bodies, before),
                 }
                 done.map(|()| clock.elapsed())
             })?;
@@ -116,9 +122,11 @@ impl FreeBodies {
         let (count, has_attitudes) = (momentum.len(), attitude.is_some());
         let mut all = inertia.iter().enumerate();
         let impossible = all.find_map(|(i, j)| Some(format!("inertia[{i}]: {}", impossible(*j)?)));
-        let (bodies, advancing) = (Bodies { now: bodies, steps: 0 }, InTurn::new(()));
-        let bodies = InTurn::new(bodies);
-        Ok(FreeBodies { bodies, advancing, count, has_attitudes, impossible })
+        const BUSY: &str =
+            "a signal handler cannot use the bodies that its thread uses or waits for";
+        let bodies = Bodies { now: bodies, steps: 0 };
+        let [bodies, before] = [bodies.clone(), bodies].map(|bodies| InTurn::new(bodies, BUSY));
+        Ok(FreeBodies { bodies, before, count, has_attitudes, impossible })
     }
     /// What is wrong with the moments of the first body that cannot be.
     #[getter]
@@ -138,7 +146,7 @@ impl FreeBodies {
             let names = METHODS.map(|(name, _)| name).join(", ");
             argument(py, "method", format!("{method:?}"), format!("one of {names}"))
         })?;
-        self.advancing.with(py, |()| self.take_steps(py, (*known, h), steps, threads))?
+        self.before.with(py, |before| self.take_steps(py, before, (*known, h), steps, threads))?
     }
     /// The steps of all calls.
     #[getter]

@@ -16,6 +16,8 @@ pub(crate) struct InTurn<T> {
     /// The thread that uses the value, then those that wait.
     threads: Mutex<VecDeque<ThreadId>>,
     changed: Condvar,
+    /// What is told to a function that asks for the value while its own thread has it or waits for it.
+    busy: &'static str,
 }
 
 /// The turn of this thread, or its place among those that wait.
@@ -38,18 +40,19 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 impl<T> InTurn<T> {
-    pub(crate) fn new(value: T) -> Self {
-        InTurn { value: Mutex::new(value), threads: Mutex::default(), changed: Condvar::new() }
+    pub(crate) fn new(value: T, busy: &'static str) -> Self {
+        let (value, threads, changed) = (Mutex::new(value), Mutex::default(), Condvar::new());
+        InTurn { value, threads, changed, busy }
     }
 
     /// Does something with the value when it is the turn of this thread. It waits without the interpreter, which the thread
     /// before it may need, and hears signals. RuntimeError in a function that the value calls: it would wait for itself.
     pub(crate) fn with<R>(&self, py: Python<'_>, act: impl FnOnce(&mut T) -> R) -> PyResult<R> {
-        let InTurn { threads, changed, .. } = self;
+        let InTurn { threads, changed, busy, .. } = self;
         let me = thread::current().id();
         let mut queue = lock(threads);
         if queue.contains(&me) {
-            return Err(PyRuntimeError::new_err("f cannot use the integrator that calls it"));
+            return Err(PyRuntimeError::new_err(*busy));
         }
         queue.push_back(me);
         drop(queue);

@@ -30,7 +30,10 @@ impl Stepper {
         shape: &[usize],
         (raised, attached): (Arc<Raised>, bool),
     ) -> PyResult<Self> {
-        let run = InTurn::new(run.map_err(|error| of_run(py, &error))?);
+        let run = InTurn::new(
+            run.map_err(|error| of_run(py, &error))?,
+            "f cannot use the integrator that calls it",
+        );
         Ok(Stepper { run, shape: shape.to_vec(), raised, attached })
     }
 
