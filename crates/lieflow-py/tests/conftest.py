@@ -58,3 +58,14 @@ def interrupted(call):
         thread.join()
         return late
     pytest.fail("the call ended before the interrupt")
+
+
+def turns_during(call, *args, **options):
+    """How often this thread has a turn during a call of another thread. A call that held the interpreter would let none pass."""
+    thread = threading.Thread(target=call, args=args, kwargs=options)
+    thread.start()
+    turns = 0
+    while thread.is_alive():
+        turns += 1
+        time.sleep(0.0005)
+    return turns

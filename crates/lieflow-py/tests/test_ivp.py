@@ -10,7 +10,7 @@ import traceback
 
 import numpy as np
 import pytest
-from conftest import J, M, body, interrupted
+from conftest import J, M, body, interrupted, turns_during
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
@@ -283,16 +283,7 @@ def test_runs_without_python_release_the_interpreter(of):
            "problem": lf.RigidBody(inertia=J, momentum_body=M)}[of]
     space = {"address": ROTATION, "formula": {"frame": "body"}, "samples": ROTATION, "problem": {}}[of]
     start = None if of == "problem" else np.eye(3)
-    thread = threading.Thread(
-        target=lf.solve_ivp, args=(fun, (0, 1e5), start),
-        kwargs={"steps": 400_000, "t_eval": [1e5], "method": "rkmk4 exp", **space},
-    )
-    thread.start()
-    turns = 0
-    while thread.is_alive():
-        turns += 1  # a run that held the interpreter would let no turn pass
-        time.sleep(0.0005)
-    assert turns > 20, turns
+    assert turns_during(lf.solve_ivp, fun, (0, 1e5), start, steps=400_000, t_eval=[1e5], method="rkmk4 exp", **space) > 20
 
 
 @pytest.mark.parametrize(

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import pickle
-import threading
-import time
 
 import numpy as np
 import pytest
 import scipy.linalg
-from conftest import interrupted
+from conftest import interrupted, turns_during
 
 import lieflow as lf
 
@@ -45,13 +43,7 @@ def test_expm_names_the_matrix_and_divides_among_threads(rng, kind):
 
 def test_complex_expm_releases_the_interpreter(rng):
     a = rng.standard_normal((4000, 24, 24)) * 1j
-    thread = threading.Thread(target=lf.expm, args=(a,))
-    thread.start()
-    turns = 0
-    while thread.is_alive():
-        turns += 1
-        time.sleep(0.0005)
-    assert turns > 20, turns
+    assert turns_during(lf.expm, a) > 20
 
 
 @pytest.mark.parametrize(
