@@ -13,8 +13,9 @@ impl Timeline {
     /// The step to `end`, of size h. If f jumps there, no stage is at `end`, and if t is a stop at which f jumps, none is at t.
     /// No stage is after the end of the run, nor after the time that the caller asked for.
     ///
-    /// A step to such a time has its whole size, and begins a few rounding units before t. One from a jump begins as much after
-    /// t. If f may jump at t, too, the step is shorter by a rounding of t at each of both.
+    /// A step to a jump has its whole size, and begins a few rounding units before t. One to the end begins so where its last
+    /// stage would be after it. One from a jump begins as much after t. If f may jump at t, too, the step is shorter by a
+    /// rounding of t at each of both.
     pub(super) fn step_to(&self, end: f64, mut h: f64, jumps: bool) -> Step<f64> {
         let (n, mut t) = (self.stats.accepted, self.t);
         let unit = unit(t, end);
@@ -37,8 +38,8 @@ impl Timeline {
             Some(whole.max(halves)).filter(|&late| late > 0.0 || jumps && late == 0.0)
         };
         if self.t != self.jumped_at {
-            let margin = if jumps { MARGIN * unit } else { unit };
-            t -= if jumps { margin } else { 0.0 };
+            let (first, margin) = if jumps { (MARGIN * unit, MARGIN * unit) } else { (0.0, unit) };
+            t -= first;
             // Times of a grid that begins far from 0 have the rounding of its start: h may end after `end`.
             while unit != 0.0
                 && let Some(late) = late(t, h)

@@ -135,15 +135,11 @@ impl Builder {
         match operator {
             Operator::Add => self.plus(du, dv),
             Operator::Sub => self.minus(du, dv),
-            Operator::Mul => {
-                let (first, second) =
-                    (du.map(|du| self.times(du, v)), dv.map(|dv| self.times(u, dv)));
-                self.plus(first, second)
-            }
-            // As a product.
-            Operator::Chain => {
-                let (first, second) =
-                    (du.map(|du| self.chain(du, v)), dv.map(|dv| self.chain(u, dv)));
+            Operator::Mul | Operator::Chain => {
+                let (first, second) = (
+                    du.map(|du| self.combine(operator, du, v)),
+                    dv.map(|dv| self.combine(operator, u, dv)),
+                );
                 self.plus(first, second)
             }
             Operator::Div => {
