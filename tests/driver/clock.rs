@@ -3,6 +3,7 @@
 use core::cell::Cell;
 use core::f64::consts::TAU;
 
+use crate::support::boxed::boxed_of_time;
 use lieflow::actions::{LeftTranslation, Linear};
 use lieflow::groups::{So3, Translations};
 use lieflow::maps::Exp;
@@ -22,8 +23,10 @@ fn turn(
 }
 
 /// Turns about z at a rate that records its times.
-fn turn_by(rate: impl Fn(f64) -> f64) -> impl Problem<Group = So3, Action = LeftTranslation> {
-    Flow::of_time(So3::new(), LeftTranslation, move |t, v: &mut Vector3<f64>| v.z = rate(t))
+fn turn_by<'a>(
+    rate: impl Fn(f64) -> f64 + 'a,
+) -> impl Problem<Group = So3, Action = LeftTranslation> + 'a {
+    boxed_of_time(So3::new(), LeftTranslation, move |t, v: &mut Vector3<f64>| v.z = rate(t))
 }
 
 fn angle(y: &Matrix3<f64>) -> f64 {
@@ -124,7 +127,7 @@ fn jumps_at_rounded_times_of_a_grid_are_not_passed() {
         let times: Vec<f64> = (0..=n).map(|k| t0 + f64::from(k) * dt).collect();
         let jumps = times.clone();
         // 1 in even parts, and 2 in odd ones.
-        let flow = Flow::of_time(So3::new(), LeftTranslation, |t, v: &mut Vector3<f64>| {
+        let flow = boxed_of_time(So3::new(), LeftTranslation, |t, v: &mut Vector3<f64>| {
             let part = times.partition_point(|time| *time <= t).max(1) - 1;
             v.z = 1.0 + (part % 2) as f64;
         });
@@ -180,7 +183,7 @@ fn errors_of_points_at_times_of_a_clock() {
             let (sin, cos) = (w * (t - t0)).sin_cos();
             *v = Vector3::new(cos, sin, 0.5);
         };
-        Flow::of_time(So3::<f64>::new(), Linear, f)
+        boxed_of_time(So3::<f64>::new(), Linear, f)
     };
     for (w, rtol) in [(1.0, 1e-9), (10.0, 1e-9), (100.0, 1e-9), (100.0, 1e-6)] {
         let (near_0, fine) = (field(0.0, w), Rkmk::new(DOP853, Exp));
@@ -250,7 +253,7 @@ fn a_jump_is_passed_with_rtol_alone() {
     type Numbers = Box<[f64]>;
     let zero: Numbers = vec![0.0; 3].into();
     let group = Translations::new(zero, 3);
-    let flow = Flow::of_time(group, LeftTranslation, |t: f64, v: &mut Numbers| {
+    let flow = boxed_of_time(group, LeftTranslation, |t: f64, v: &mut Numbers| {
         (v[0], v[1]) = (0.02 * (0.3 * t).sin().signum(), 0.01);
     });
     let start: Numbers = vec![0.1, 0.2, 0.3].into();

@@ -8,17 +8,18 @@ use lieflow::groups::Translations;
 use lieflow::methods::magnus::Magnus8;
 use lieflow::methods::tableau::RK4;
 use lieflow::methods::{Doubling, Embedded, Facts, Method, Rk, StepCost};
-use lieflow::problems::{Flow, Problem, amplitudes, schrodinger};
+use lieflow::problems::{Problem, amplitudes, schrodinger};
 use lieflow::solve::Next;
 use lieflow::tolerance::Tolerance;
 use lieflow::{Error, Event, Integrator, RunError, Solve, Step, StepError};
 
 use crate::modes::{Pace, V, every_mode};
 use crate::scipy::free;
+use crate::support::boxed::boxed_of_time;
 
 /// ẋ = 1.
 fn moving() -> impl Problem<Group = Translations<V>, Action = LeftTranslation> {
-    Flow::of_time(free(), LeftTranslation, |_: f64, v: &mut V| *v = V::x())
+    boxed_of_time(free(), LeftTranslation, |_: f64, v: &mut V| *v = V::x())
 }
 
 /// An attempt: t, h and the ratio of its error to its tolerance, none where it failed.
@@ -318,7 +319,7 @@ fn the_first_step() {
         for (rtol, atol, order, size) in settings {
             let (start, unit) = (V::repeat(size), |y: V| y.norm().max(1.0));
             let problem =
-                Flow::of_time(free(), LeftTranslation, move |t: f64, v: &mut V| *v = field(t));
+                boxed_of_time(free(), LeftTranslation, move |t: f64, v: &mut V| *v = field(t));
             let method = told(order, |_, _| Some(0.01));
             let run = Solve::new(&problem, &method, [0.0, end]).tolerances(rtol, atol).run(start);
             run.expect("a run");
@@ -334,7 +335,7 @@ fn the_first_step() {
         }
     }
     // What hardly moves: a millionth of the span, and a hundred times that.
-    let problem = Flow::of_time(free(), LeftTranslation, |_: f64, v: &mut V| *v = V::x() * 1e-9);
+    let problem = boxed_of_time(free(), LeftTranslation, |_: f64, v: &mut V| *v = V::x() * 1e-9);
     let method = told(4, |_, _| Some(0.01));
     let run = Solve::new(&problem, &method, [0.0, 30.0]).tolerances(1e-6, 1e-6).run(V::zeros());
     run.expect("a run");

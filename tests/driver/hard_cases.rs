@@ -10,12 +10,13 @@ use lieflow::maps::{CCSK123, Cay, Exp};
 use lieflow::methods::commutator_free::CF43;
 use lieflow::methods::tableau::{BS3, DOP853, DOPRI5, RK4};
 use lieflow::methods::{CommutatorFree, Doubling, Rkmk};
-use lieflow::problems::{Fallible, Flow, LinearFlow, RigidBody, TryProblem};
+use lieflow::problems::{Fallible, LinearFlow, RigidBody, TryProblem};
 use lieflow::{LieGroup, RunError, Solve, StepControl, StepError, Stops, TimeGrid};
 use nalgebra::Vector3;
 
 use crate::modes::{Pace, Ran, V, every_mode};
 use crate::scipy::free;
+use crate::support::boxed::{boxed_flow, boxed_of_time};
 
 const PACES: [Pace; 2] = [Pace::ByError(1e-6, 1e-9), Pace::Equal(0.05)];
 
@@ -25,8 +26,10 @@ pub(crate) fn body() -> RigidBody {
 pub(crate) const START: V = Vector3::new(0.2, 0.5, 3.0);
 
 /// x turns about an axis at a rate of time.
-pub(crate) fn spin(rate: impl Fn(f64) -> f64) -> LinearFlow<So3, Linear, impl Fn(f64, &mut V)> {
-    Flow::of_time(So3::new(), Linear, move |t, v: &mut V| *v = V::new(0.6, 0.0, 0.8) * rate(t))
+pub(crate) fn spin<'a>(
+    rate: impl Fn(f64) -> f64 + 'a,
+) -> LinearFlow<So3, Linear, impl Fn(f64, &mut V) + 'a> {
+    boxed_of_time(So3::new(), Linear, move |t, v: &mut V| *v = V::new(0.6, 0.0, 0.8) * rate(t))
 }
 
 /// Every run in every mode.
@@ -230,7 +233,7 @@ fn t6_a_field_outside_the_algebra() {
     let outside: [(&str, Mat<f64>); 2] =
         [("symmetric", Mat::identity(3, 3)), ("of another size", Mat::zeros(2, 2))];
     for (what, value) in outside {
-        let problem = Flow::of_time(group.clone(), LeftTranslation, |_: f64, v| {
+        let problem = boxed_of_time(group.clone(), LeftTranslation, |_: f64, v| {
             *v = AlgebraMatrix::new_unchecked(value.clone())
         });
         let method = Rkmk::new(DOPRI5, Exp);
@@ -285,7 +288,7 @@ fn t7_a_field_with_errors_of_its_own() {
 
 #[test]
 fn t8_what_blows_up() {
-    let problem = Flow::new(free(), LeftTranslation, |_: f64, y: &V, v: &mut V| {
+    let problem = boxed_flow(free(), LeftTranslation, |_: f64, y: &V, v: &mut V| {
         *v = V::new(y.x * y.x, 0.0, 0.0)
     });
     in_every_mode!(&problem, [0.0, 10.0], Pace::ByError(1e-8, 0.0), V::x(), |ran| match &ran.end {
@@ -485,7 +488,7 @@ fn a_jump_at_the_end_is_not_stepped_on() {
     use nalgebra::Matrix3;
     for [from, to] in [[0.0, 1.0], [2.0, 1.0]] {
         let turn =
-            Flow::of_time(So3::new(), LeftTranslation, move |t: f64, v: &mut Vector3<f64>| {
+            boxed_of_time(So3::new(), LeftTranslation, move |t: f64, v: &mut Vector3<f64>| {
                 let is_before = if to > from { t < 1.0 } else { t > 1.0 };
                 v.z = if is_before { 0.5 } else { 5.0 };
             });
@@ -507,7 +510,7 @@ fn a_jump_at_the_end_is_not_stepped_on() {
 fn no_time_is_lost_at_stops() {
     use lieflow::methods::magnus::{Magnus4, Magnus8};
     use nalgebra::Matrix3;
-    let turn = Flow::of_time(So3::new(), LeftTranslation, |_: f64, v: &mut Vector3<f64>| v.z = 1.0);
+    let turn = boxed_of_time(So3::new(), LeftTranslation, |_: f64, v: &mut Vector3<f64>| v.z = 1.0);
     let t0 = 1.7e9;
     let stops: Vec<f64> = (1..100).map(|k| t0 + 0.01 * f64::from(k)).collect();
     let solve = |end: f64| Solve::new(&turn, &Magnus4, [t0, end]).dt(0.01).stops(stops.clone());
@@ -527,7 +530,7 @@ fn no_time_is_lost_at_kinks() {
     let (t0, n) = (1e4, 100);
     let knots: Vec<f64> = (0..=n).map(|k| t0 + 0.01 * f64::from(k)).collect();
     let times = knots.clone();
-    let turn = Flow::of_time(So3::new(), LeftTranslation, move |t: f64, v: &mut Vector3<f64>| {
+    let turn = boxed_of_time(So3::new(), LeftTranslation, move |t: f64, v: &mut Vector3<f64>| {
         let k = times.partition_point(|knot| *knot <= t).clamp(1, times.len() - 1);
         let share = (t - times[k - 1]) / (times[k] - times[k - 1]);
         v.z = if k % 2 == 1 { share } else { 1.0 - share };

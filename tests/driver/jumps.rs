@@ -1,5 +1,6 @@
 //! Jumps of f: stops around t = 0, the value of f at a stop, jumps without a stop, and long steps where nothing happens.
 
+use crate::support::boxed::boxed_flow;
 use lieflow::actions::{Conjugation, LeftTranslation, Linear};
 use lieflow::faer::{Mat, c64};
 use lieflow::groups::{
@@ -10,7 +11,7 @@ use lieflow::methods::commutator_free::{CF4, CF43};
 use lieflow::methods::low_storage::LS32;
 use lieflow::methods::tableau::{DOP853, DOPRI5, RK4};
 use lieflow::methods::{CommutatorFree, Doubling, LowStorage, Rk, Rkmk};
-use lieflow::problems::{Flow, Problem};
+use lieflow::problems::Problem;
 use lieflow::{Solve, StepControl};
 use nalgebra::Vector3;
 
@@ -18,8 +19,8 @@ type V = Vector3<f64>;
 type Rate = fn(f64) -> f64;
 
 /// A turn about e₃ with this rate: what it ends at is the angle.
-fn spin(rate: impl Fn(f64) -> f64) -> impl Problem<Group = So3, Action = Linear> {
-    Flow::new(So3::new(), Linear, move |t, _: &V, v: &mut V| *v = V::new(0.0, 0.0, rate(t)))
+fn spin<'a>(rate: impl Fn(f64) -> f64 + 'a) -> impl Problem<Group = So3, Action = Linear> + 'a {
+    boxed_flow(So3::new(), Linear, move |t, _: &V, v: &mut V| *v = V::new(0.0, 0.0, rate(t)))
 }
 
 fn angle(y: &V) -> f64 {
@@ -117,7 +118,7 @@ fn noise_beside_a_stop_is_not_its_jump() {
     let calls = core::cell::Cell::new(0);
     let from = |t0: f64| {
         let calls = &calls;
-        Flow::new(So3::new(), Linear, move |t: f64, _: &V, v: &mut V| {
+        boxed_flow(So3::new(), Linear, move |t: f64, _: &V, v: &mut V| {
             calls.set(calls.get() + u32::from(stops.iter().any(|stop| t == t0 + stop)));
             let x = t - t0;
             let factor = [1.0, -1.5, 2.0][stops.iter().filter(|stop| t > t0 + *stop).count()];
@@ -201,7 +202,7 @@ fn rows_within_long_steps() {
                 let rate = 1.0 + changes * 0.1 * (0.05 * t).sin();
                 (0..4).for_each(|j| (0..4).for_each(|i| v.as_mut()[(i, j)] = rate * a[(i, j)]));
             };
-            let problem = Flow::new(so4.clone(), LeftTranslation, field);
+            let problem = boxed_flow(so4.clone(), LeftTranslation, field);
             let method = Rkmk::new(DOP853, Exp);
             let run = Solve::new(&problem, &method, [0.0, 100.0]).tolerances(rtol, 0.0);
             let run = run.times(&times[..]).run(so4.identity()).expect("a run");
@@ -229,7 +230,7 @@ fn rows_and_traces_on_unitary_groups() {
     });
     let generator = ComplexMatrix::from_fn(3, 3, |i, j| i_h[(i, j)]);
     let field = |_: f64, _: &_, v: &mut ComplexMatrix| v.clone_from(&generator);
-    let problem = Flow::new(u3, LeftTranslation, field);
+    let problem = boxed_flow(u3, LeftTranslation, field);
     for rtol in [1e-3, 1e-6] {
         let method = Rkmk::new(DOP853, Exp);
         let run = Solve::new(&problem, &method, [0.0, 100.0]).tolerances(rtol, 0.0);
@@ -243,7 +244,7 @@ fn rows_and_traces_on_unitary_groups() {
             assert!(u3.defect(y) < 2e-14, "rtol = {rtol}, t = {t}: {}", u3.defect(y));
         }
     }
-    let conjugated = Flow::new(u3, Conjugation, field);
+    let conjugated = boxed_flow(u3, Conjugation, field);
     let start = ComplexMatrix::from_fn(3, 3, |i, j| {
         c64::new(0.0, if i == j { 1.0 + i as f64 } else { 0.1 })
     });

@@ -1,5 +1,6 @@
 //! An f that is not in 𝔤 ends a run, and rounding of f does not.
 
+use crate::support::boxed::{boxed_flow, boxed_of_time};
 use lieflow::actions::{Conjugation, Each, LeftTranslation, Linear, Pair};
 use lieflow::faer::{Mat, c64};
 use lieflow::groups::{
@@ -90,7 +91,7 @@ fn with_out(group: &MatrixGroup, x: &AlgebraMatrix, out: f64) -> AlgebraMatrix {
 fn a_state_that_is_set_is_on_the_group() {
     for group in groups() {
         let still = |_: f64, v: &mut AlgebraMatrix| v.fill(0.0);
-        let flow = Flow::of_time(group.clone(), LeftTranslation, still);
+        let flow = boxed_of_time(group.clone(), LeftTranslation, still);
         let method = Rkmk::new(DOPRI5, Exp);
         let start = group.identity();
         let mut run = Solve::new(&flow, &method, [0.0, 1.0]).dt(0.1).integrator(start).unwrap();
@@ -115,7 +116,7 @@ fn an_f_that_leaves_the_algebra_ends_the_run() {
         let x = group.sample_algebra(&mut rng, 0.4);
         let flow = |size: f64| {
             let (of, x) = (group.clone(), x.clone());
-            Flow::new(group.clone(), LeftTranslation, move |t, _: &_, v: &mut AlgebraMatrix| {
+            boxed_flow(group.clone(), LeftTranslation, move |t, _: &_, v: &mut AlgebraMatrix| {
                 v.copy_from(&*with_out(&of, &x, size * out(t)));
             })
         };
@@ -126,7 +127,7 @@ fn an_f_that_leaves_the_algebra_ends_the_run() {
     let x = group.sample_algebra(&mut rng, 0.4);
     let flow = |size: f64| {
         let x = x.clone();
-        Flow::new(group.clone(), LeftTranslation, move |t, _: &_, v: &mut AlgebraMatrix| {
+        boxed_flow(group.clone(), LeftTranslation, move |t, _: &_, v: &mut AlgebraMatrix| {
             v.copy_from(&*x);
             v[(0, 1)] += size * out(t);
             v[(1, 0)] -= size * out(t);
@@ -135,7 +136,7 @@ fn an_f_that_leaves_the_algebra_ends_the_run() {
     is_seen("blocks", &flow(1.0), &flow(0.0), &group.identity());
     let unitary = Unitary::new(3).expect("a group");
     let flow = |size: f64| {
-        Flow::new(unitary, LeftTranslation, move |t: f64, _: &_, v: &mut ComplexMatrix| {
+        boxed_flow(unitary, LeftTranslation, move |t: f64, _: &_, v: &mut ComplexMatrix| {
             let level = |i: usize, j: usize| c64::new(0.0, if i == j { t } else { 0.5 });
             *v = ComplexMatrix::from_fn(3, 3, |i, j| level(i, j) + size * out(t));
         })
@@ -157,7 +158,7 @@ fn an_f_that_leaves_the_algebra_in_a_part_ends_the_run() {
     let action = || Pair(LeftTranslation, LeftTranslation);
     let flow = |size: f64| {
         let bad = bad(size);
-        Flow::new(product.clone(), action(), move |t, _: &_, v: &mut (_, AlgebraMatrix)| {
+        boxed_flow(product.clone(), action(), move |t, _: &_, v: &mut (_, AlgebraMatrix)| {
             v.0 = nalgebra::Vector3::new(1.0, t, 0.0);
             bad(t, &mut v.1);
         })
@@ -168,18 +169,18 @@ fn an_f_that_leaves_the_algebra_in_a_part_ends_the_run() {
     let flow = |size: f64| {
         let bad = bad(size);
         let f = move |t, _: &_, v: &mut Box<[AlgebraMatrix]>| bad(t, &mut v[2]);
-        Flow::new(power.clone(), Each(LeftTranslation), f)
+        boxed_flow(power.clone(), Each(LeftTranslation), f)
     };
     is_seen("a power", &flow(1.0), &flow(0.0), &power.identity());
 
     let flow = |size: f64| {
         let bad = bad(size);
-        Flow::new(so.clone(), Linear, move |t, _: &_, v: &mut AlgebraMatrix| bad(t, v))
+        boxed_flow(so.clone(), Linear, move |t, _: &_, v: &mut AlgebraMatrix| bad(t, v))
     };
     is_seen("columns", &flow(1.0), &flow(0.0), &Mat::from_fn(3, 2, |i, j| (1 + i + j) as f64));
     let flow = |size: f64| {
         let bad = bad(size);
-        Flow::new(so.clone(), Conjugation, move |t, _: &_, v: &mut AlgebraMatrix| bad(t, v))
+        boxed_flow(so.clone(), Conjugation, move |t, _: &_, v: &mut AlgebraMatrix| bad(t, v))
     };
     is_seen("by conjugation", &flow(1.0), &flow(0.0), &Mat::from_fn(3, 3, |i, j| (i + j) as f64));
 }
@@ -189,7 +190,7 @@ fn an_f_that_leaves_the_algebra_in_a_part_ends_the_run() {
 fn a_derivative_in_place_of_f_is_seen() {
     let group = MatrixGroup::so(4).expect("a group");
     let k = group.sample_algebra(&mut Pcg64::seed_from_u64(9), 1.0);
-    let flow = Flow::new(
+    let flow = boxed_flow(
         group.clone(),
         LeftTranslation,
         move |_, y: &lieflow::groups::GroupMatrix, v: &mut AlgebraMatrix| {
@@ -211,10 +212,11 @@ fn a_state_that_has_left_m_is_seen() {
     let group = MatrixGroup::so(4).expect("a group");
     let x = group.sample_algebra(&mut Pcg64::seed_from_u64(10), 1.0);
     let of = group.clone();
-    let flow = Flow::new(group.clone(), LeftTranslation, move |t, _: &_, v: &mut AlgebraMatrix| {
-        let size = if t > 1.0 && t < 1.0 + 5e-3 { 1.0 } else { 0.0 };
-        v.copy_from(&*with_out(&of, &x, size));
-    });
+    let flow =
+        boxed_flow(group.clone(), LeftTranslation, move |t, _: &_, v: &mut AlgebraMatrix| {
+            let size = if t > 1.0 && t < 1.0 + 5e-3 { 1.0 } else { 0.0 };
+            v.copy_from(&*with_out(&of, &x, size));
+        });
     let run = Solve::new(&flow, &Rkmk::new(RK4, Exp), [0.0, 3.0]).dt(1e-3).run(group.identity());
     match run.map_err(|failed| failed.error) {
         Err(RunError::LeftManifold { t, source: Error::NotOnGroup { arg: "y", .. } }) => {
@@ -243,7 +245,7 @@ fn rounding_of_f_ends_no_run() {
         v.copy_from(left - right);
     };
     let start = Mat::from_fn(4, 4, |i, j| 1.0 / (1 + i + j) as f64);
-    let flow = Flow::new(group, Conjugation, f);
+    let flow = boxed_flow(group, Conjugation, f);
     let method = Rkmk::new(DOPRI5, Exp);
     for solve in [0, 1].map(|i| {
         let solve = Solve::new(&flow, &method, [0.0, 200.0]);
@@ -318,7 +320,7 @@ fn corrections_do_no_harm_where_a_solution_grows() {
         let (n, free) = (group.n(), MatrixGroup::gl(group.n()).expect("a group"));
         let [on_group, on_gl] = [group, free].map(|group| {
             let y0 = group.identity();
-            let flow = Flow::new(group, LeftTranslation, field(n));
+            let flow = boxed_flow(group, LeftTranslation, field(n));
             let method = Rkmk::new(DOPRI5, Exp);
             Solve::new(&flow, &method, [0.0, end]).steps(20_000).run(y0).expect("a run").y
         });
@@ -333,7 +335,7 @@ fn a_value_of_another_size_ends_a_run() {
     let ends =
         |run: Result<(), RunError>| assert!(matches!(run, Err(RunError::Step(_))), "{run:?}");
     let copies = Power::new(So3::new(), 2).expect("two");
-    let flow = Flow::of_time(copies, Linear, |t: f64, v: &mut Box<[Vector3<f64>]>| {
+    let flow = boxed_of_time(copies, Linear, |t: f64, v: &mut Box<[Vector3<f64>]>| {
         *v = vec![Vector3::z(); if t < 0.5 { 2 } else { 1 }].into();
     });
     let method = Rkmk::new(RK4, Exp);
@@ -342,7 +344,7 @@ fn a_value_of_another_size_ends_a_run() {
     ends(run.map(drop).map_err(|failed| failed.error));
 
     let u3 = Unitary::new(3).expect("a group");
-    let flow = Flow::of_time(u3, LeftTranslation, |t: f64, v: &mut ComplexMatrix| {
+    let flow = boxed_of_time(u3, LeftTranslation, |t: f64, v: &mut ComplexMatrix| {
         let n = if t < 0.5 { 3 } else { 2 };
         *v = ComplexMatrix::from_fn(n, n, |i, j| c64::new(0.0, if i == j { 1.0 } else { 0.0 }));
     });
@@ -422,7 +424,7 @@ impl Action<So3<f64>> for Unchecked {
 
 #[test]
 fn own_actions_end_at_numbers_that_are_not_finite() {
-    let turn = Flow::new(
+    let turn = boxed_flow(
         So3::<f64>::new(),
         Unchecked,
         |t: f64, _: &Vector3<f64>, v: &mut Vector3<f64>| {
@@ -550,7 +552,7 @@ fn own_groups_end_at_numbers_that_are_not_finite() {
                 let field = move |_: f64, _: &Vector3<f64>, v: &mut Vector3<f64>| {
                     *v = Vector3::new(1.0, 0.0, rate);
                 };
-                let flow = Flow::new(Plain, $action, field);
+                let flow = boxed_flow(Plain, $action, field);
                 let mut solve = Solve::new(&flow, &method, [0.0, 10.0]).dt(0.5);
                 if changes {
                     let lost = Event::new("lost", |t, _: &Vector3<f64>| t - 5.0);

@@ -1,11 +1,12 @@
 //! One run in every mode of the driver: each way to call it, each kind of output, events, stops, by hand.
 
+use crate::support::boxed::{boxed_flow, boxed_of_time};
 use lieflow::actions::Linear;
 use lieflow::groups::So3;
 use lieflow::maps::CCSK;
 use lieflow::methods::tableau::RK4;
 use lieflow::methods::{AnyMethod, Embedded, Method, Rkmk};
-use lieflow::problems::{Flow, Invariant, Problem};
+use lieflow::problems::{Invariant, Problem};
 use lieflow::solve::{Interrupted, Next, Status};
 use lieflow::{
     Action, Event, LieAlgebra, RunError, SaveAt, Solution, Solve, Step, StepControl, TimeGrid,
@@ -210,7 +211,7 @@ fn stored(mode: &'static str, run: Result<Solution<V>, Interrupted<V>>) -> Ran {
 #[test]
 fn a_method_behind_a_pointer_takes_the_typed_step() {
     // The map alternates with the number of the step, and f depends on t.
-    let flow = Flow::new(So3::new(), Linear, |t: f64, x: &V, v: &mut V| {
+    let flow = boxed_flow(So3::new(), Linear, |t: f64, x: &V, v: &mut V| {
         *v = V::new(t, x[0], 1.0 + t * x[1]);
     });
     let typed = Rkmk::new(RK4, CCSK);
@@ -231,7 +232,7 @@ fn a_method_behind_a_pointer_takes_the_typed_step() {
 #[test]
 fn a_changed_state_stays_on_its_own_orbit() {
     // Each step is on a sphere, and the driver corrects the length to that of the last change.
-    let flow = Flow::of_time(So3::new(), Linear, |t: f64, v: &mut V| *v = V::new(1.0, t, 0.5));
+    let flow = boxed_of_time(So3::new(), Linear, |t: f64, v: &mut V| *v = V::new(1.0, t, 0.5));
     let method = Rkmk::new(RK4, CCSK);
     let mut run =
         Solve::new(&flow, &method, [0.0, 10.0]).dt(0.01).integrator(V::x()).expect("a run");
@@ -245,7 +246,7 @@ fn a_changed_state_stays_on_its_own_orbit() {
 #[test]
 fn the_largest_drift_is_that_of_the_output() {
     // The invariant that is claimed is x of a turning vector: it is 1 at both ends, and −1 half way.
-    let flow = Flow::of_time(So3::new(), Linear, |_: f64, v: &mut V| *v = V::z())
+    let flow = boxed_of_time(So3::new(), Linear, |_: f64, v: &mut V| *v = V::z())
         .invariant(Invariant::of_the_flow("x", 1), |x: &V| x[0]);
     let span = [0.0, core::f64::consts::TAU];
     let method = Rkmk::new(RK4, CCSK);

@@ -1,6 +1,7 @@
 //! The lengths that an action conserves stay where they are over many steps, also where the rounding of a step has a
 //! preferred side, as with a constant f.
 
+use crate::support::boxed::boxed_of_time;
 use lieflow::actions::{Coadjoint, Conjugation, Lagrangian};
 use lieflow::faer::{Mat, c64};
 use lieflow::groups::{AlgebraMatrix, ComplexMatrix, MatrixGroup, Se23, Unitary};
@@ -8,7 +9,7 @@ use lieflow::maps::{Cay, Exp};
 use lieflow::methods::tableau::RK4;
 use lieflow::methods::{Method, Rkmk};
 use lieflow::nalgebra::Vector3;
-use lieflow::problems::{Flow, PointOf, Problem};
+use lieflow::problems::{PointOf, Problem};
 use lieflow::space::Metric;
 use lieflow::{Error, LieAlgebra, RunError, Solve};
 
@@ -37,7 +38,7 @@ fn lengths_on_duals_are_constant() {
         }
     };
     let m = Mat::from_fn(4, 4, |i, j| (i as f64 - j as f64) / (1.0 + (i + j) as f64));
-    let flow = Flow::of_time(so4, Coadjoint, turn);
+    let flow = boxed_of_time(so4, Coadjoint, turn);
     let length: fn(&Mat<f64>) -> Vec<f64> = |m| vec![m.norm_l2()];
     assert!(drift(&flow, &Rkmk::new(RK4, Exp), m.clone(), length) < MOST);
     assert!(drift(&flow, &Rkmk::new(RK4, Cay), m, length) < MOST);
@@ -56,8 +57,8 @@ fn lengths_on_duals_are_constant() {
     };
     let length: fn(&ComplexMatrix) -> Vec<f64> = |p| vec![p.size()];
     let method = Rkmk::new(RK4, Exp);
-    assert!(drift(&Flow::of_time(u2, Conjugation, field), &method, p.clone(), length) < MOST);
-    assert!(drift(&Flow::of_time(u2, Coadjoint, field), &method, p, length) < MOST);
+    assert!(drift(&boxed_of_time(u2, Conjugation, field), &method, p.clone(), length) < MOST);
+    assert!(drift(&boxed_of_time(u2, Coadjoint, field), &method, p, length) < MOST);
 
     type Dual = (Vector3<f64>, (Vector3<f64>, Vector3<f64>));
     let field = |_: f64, v: &mut Dual| {
@@ -65,14 +66,14 @@ fn lengths_on_duals_are_constant() {
     };
     let start = (Vector3::x(), (Vector3::new(1.0, 2.0, -0.5), Vector3::new(0.1, 0.3, 0.7)));
     let lengths: fn(&Dual) -> Vec<f64> = |m| vec![m.1.0.norm(), m.1.1.norm()];
-    assert!(drift(&Flow::of_time(Se23::new(), Coadjoint, field), &method, start, lengths) < MOST);
+    assert!(drift(&boxed_of_time(Se23::new(), Coadjoint, field), &method, start, lengths) < MOST);
 }
 
 /// P stays symmetric under symplectic matrices alone.
 #[test]
 fn subspaces_need_a_symplectic_group() {
     let run = |group: MatrixGroup, m: usize| {
-        let flow = Flow::of_time(group, Lagrangian, |_, _: &mut AlgebraMatrix| {});
+        let flow = boxed_of_time(group, Lagrangian, |_, _: &mut AlgebraMatrix| {});
         let p = Mat::from_fn(m, m, |i, j| if i == j { 1.0 } else { 0.0 });
         let method = Rkmk::new(RK4, Exp);
         let run = Solve::new(&flow, &method, [0.0, 1.0]).steps(1).run(p);

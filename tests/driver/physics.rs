@@ -8,14 +8,14 @@ use lieflow::maps::{Cay, Exp};
 use lieflow::methods::tableau::{DOP853, DOPRI5};
 use lieflow::methods::{ExactMotion, Method, Rk, Rkmk};
 use lieflow::problems::{
-    BodyMotion, Exact, Flow, RigidBody, RigidBodyAttitude, SpaceTorque, SphericalPendulum,
-    TorqueBody,
+    BodyMotion, Exact, RigidBody, RigidBodyAttitude, SpaceTorque, SphericalPendulum, TorqueBody,
 };
 use lieflow::{Error, Event, RunError, Solve};
 use nalgebra::{Matrix3, Vector3};
 
 use crate::modes::V;
 use crate::scipy::free;
+use crate::support::boxed::boxed_flow;
 
 /// K(k) by the arithmetic-geometric mean, from k' = √(1 − k²).
 fn quarter_period(complement: f64) -> f64 {
@@ -203,7 +203,7 @@ fn the_heavy_top_of_exudyn() {
 #[test]
 fn a_ball_that_bounces() {
     let (gravity, height, keeps): (f64, f64, f64) = (9.81, 2.0, 0.8);
-    let ball = Flow::new(free(), LeftTranslation, move |_: f64, y: &V, v: &mut V| {
+    let ball = boxed_flow(free(), LeftTranslation, move |_: f64, y: &V, v: &mut V| {
         *v = V::new(y.y, -gravity, 0.0)
     });
     let method = Rk(DOPRI5);
@@ -284,7 +284,7 @@ fn a_change_that_leaves_the_manifold_is_refused() {
 #[test]
 fn an_impulse_on_a_part() {
     let group = Product(So3::<f64>::new(), Translations::new(V::zeros(), 3));
-    let problem = Flow::new(
+    let problem = boxed_flow(
         group,
         LeftTranslation,
         |_: f64, (_, rate): &(Matrix3<f64>, V), v: &mut (V, V)| {

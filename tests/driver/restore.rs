@@ -8,7 +8,7 @@ use lieflow::groups::{So3, Unitary};
 use lieflow::maps::{CCSK, Exp};
 use lieflow::methods::tableau::{DOPRI5, RK4};
 use lieflow::methods::{AnyMethod, FluidMidpoint, Method, Rk, Rkmk};
-use lieflow::problems::{Flow, PointOf, Problem, Zeitlin};
+use lieflow::problems::{PointOf, Problem, Zeitlin};
 use lieflow::space::Numbers;
 use lieflow::{Event, Integrator, Solve, TimeGrid};
 use nalgebra::Matrix3;
@@ -17,6 +17,7 @@ use rand::SeedableRng;
 use crate::hard_cases::{START, body, spin};
 use crate::modes::V;
 use crate::scipy::free;
+use crate::support::boxed::{boxed_flow, boxed_of_time};
 
 /// The bits of a point.
 fn bits<Y: Numbers + Clone>(y: &Y) -> Vec<u64> {
@@ -93,7 +94,7 @@ fn steps_by_their_error() {
         Solve::new(&jumps, &method, [0.0, 5.0]).tolerances(1e-7, 0.0).integrator(V::x()).unwrap()
     });
     let group = So3::<f64>::new();
-    let turning = Flow::of_time(group, LeftTranslation, |t: f64, v: &mut V| {
+    let turning = boxed_of_time(group, LeftTranslation, |t: f64, v: &mut V| {
         *v = V::new(9.0 * t.sin(), t, 3.0)
     });
     let doubled = AnyMethod::new(Rkmk::new(RK4, CCSK));
@@ -128,7 +129,7 @@ fn whole_runs() {
 
 fn goes_on_with_events(every: Duration) {
     let problem =
-        Flow::new(free(), LeftTranslation, |_: f64, y: &V, v: &mut V| *v = V::new(y.y, -1.0, 0.3));
+        boxed_flow(free(), LeftTranslation, |_: f64, y: &V, v: &mut V| *v = V::new(y.y, -1.0, 0.3));
     let method = Rk(DOPRI5);
     type Shown = Vec<(u64, Vec<u64>)>;
     let run = |resume: Option<&Vec<u8>>, states: &RefCell<Vec<Vec<u8>>>, shown: &RefCell<Shown>| {

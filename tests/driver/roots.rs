@@ -2,6 +2,7 @@
 
 use std::cell::Cell;
 
+use crate::support::boxed::boxed_of_time;
 use lieflow::Stats;
 use lieflow::groups::{Sample, So3};
 use lieflow::methods::commutator_free::CF43;
@@ -427,7 +428,7 @@ where
 #[test]
 fn steps_that_turn_far_have_their_least_size() {
     let turning =
-        Flow::of_time(So3::<f64>::new(), LeftTranslation, |_, v: &mut V| *v = 100.0 * V::z());
+        boxed_of_time(So3::<f64>::new(), LeftTranslation, |_, v: &mut V| *v = 100.0 * V::z());
     let control = StepControl::new(1e-8, 1e-8).unwrap().min_step(4.0).unwrap();
     let method = Rkmk::new(DOPRI5, Exp);
     let event = Event::new("g", |_, y: &Matrix3<f64>| y[(1, 0)] - 0.9);

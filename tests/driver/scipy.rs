@@ -35,6 +35,7 @@
 
 use core::cell::Cell;
 
+use crate::support::boxed::{boxed_flow, boxed_of_time};
 use faer::Mat;
 use lieflow::actions::{LeftTranslation, Linear};
 use lieflow::groups::{So3, Translations};
@@ -42,7 +43,7 @@ use lieflow::maps::{Cay, Exp};
 use lieflow::methods::commutator_free::CF43;
 use lieflow::methods::tableau::{BS3, DOP853, DOPRI5};
 use lieflow::methods::{CommutatorFree, Embedded, Rk, Rkmk};
-use lieflow::problems::{Flow, Problem};
+use lieflow::problems::Problem;
 use lieflow::solve::{Continuous, Next, Status};
 use lieflow::{Event, RunError, Solve};
 use nalgebra::Vector3;
@@ -56,7 +57,7 @@ pub(crate) fn free() -> Translations<V> {
 
 /// ẋ = −2tx², ẏ = xy, ż = −z² on T(3): x = 1/(1 + t²), y = exp(atan t), z = 1/t.
 pub(crate) fn rational() -> impl Problem<Group = Translations<V>, Action = LeftTranslation> {
-    Flow::new(free(), LeftTranslation, |t: f64, p: &V, v: &mut V| {
+    boxed_flow(free(), LeftTranslation, |t: f64, p: &V, v: &mut V| {
         *v = V::new(-2.0 * t * p.x * p.x, p.x * p.y, -p.z * p.z);
     })
 }
@@ -143,7 +144,7 @@ fn integration() {
 
 /// x turns at rate 1 about e₃: x₁ = cos t.
 pub(crate) fn turning() -> impl Problem<Group = So3, Action = Linear> {
-    Flow::of_time(So3::new(), Linear, |_: f64, v: &mut V| *v = V::z())
+    boxed_of_time(So3::new(), Linear, |_: f64, v: &mut V| *v = V::z())
 }
 
 #[test]
@@ -281,7 +282,7 @@ fn an_empty_span() {
 #[test]
 fn a_point_without_numbers() {
     let group = Translations::new(Mat::<f64>::zeros(0, 0), 0);
-    let problem = Flow::new(group, LeftTranslation, |_: f64, _: &Mat<f64>, _: &mut Mat<f64>| {});
+    let problem = boxed_flow(group, LeftTranslation, |_: f64, _: &Mat<f64>, _: &mut Mat<f64>| {});
     let method = Rk(DOPRI5);
     let mut run = Solve::new(&problem, &method, [0.0, 10.0])
         .tolerances(1e-6, 1e-9)
@@ -298,7 +299,7 @@ fn a_point_without_numbers() {
 
 #[test]
 fn nothing_moves() {
-    let still = Flow::of_time(So3::new(), Linear, |_: f64, v: &mut V| *v = V::zeros());
+    let still = boxed_of_time(So3::new(), Linear, |_: f64, v: &mut V| *v = V::zeros());
     macro_rules! check {
         ($($method:expr),*) => {$(
             let method = $method;
@@ -369,7 +370,7 @@ fn a_start_that_is_not_finite() {
 fn no_evaluation_outside_the_span() {
     let seen = Cell::new([f64::INFINITY, f64::NEG_INFINITY]);
     for span in [[0.0, 1e-4], [0.0, 10.0], [5.0, 0.1], [100.0, 200.0]] {
-        let problem = Flow::of_time(So3::new(), Linear, |t: f64, v: &mut V| {
+        let problem = boxed_of_time(So3::new(), Linear, |t: f64, v: &mut V| {
             let [low, high] = seen.get();
             seen.set([low.min(t), high.max(t)]);
             *v = V::new((3.0 * t).cos(), 0.3, (0.5 * t).sin());

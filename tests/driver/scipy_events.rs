@@ -8,7 +8,6 @@ use lieflow::maps::{Cay, Exp};
 use lieflow::methods::commutator_free::CF43;
 use lieflow::methods::tableau::{BS3, DOP853, DOPRI5};
 use lieflow::methods::{CommutatorFree, Rk, Rkmk};
-use lieflow::problems::Flow;
 use lieflow::solve::Status;
 use lieflow::{Event, Solve};
 
@@ -16,11 +15,12 @@ use crate::modes::V;
 use crate::scipy::{
     SPANS, everywhere, free, rational, rational_at, times, turning, with_every_method,
 };
+use crate::support::boxed::{boxed_flow, boxed_of_time};
 
 #[test]
 fn many_short_steps_to_an_event() {
     // Thrown up, with steps of 1/40 of the time of flight: 0.01 t − 4.9 t² = 0.
-    let problem = Flow::new(free(), LeftTranslation, |_: f64, p: &V, v: &mut V| {
+    let problem = boxed_flow(free(), LeftTranslation, |_: f64, p: &V, v: &mut V| {
         *v = V::new(p.y, -9.80665, 0.0)
     });
     let method = Rk(DOPRI5);
@@ -146,7 +146,7 @@ fn an_event_before_the_first_output() {
 #[test]
 fn an_event_and_a_continuous_solution_of_a_steep_problem() {
     // ẋ = x(t − 2): x = 0.05·exp(t²/2 − 2t − 6) from t = −2.
-    let problem = Flow::new(free(), LeftTranslation, |t: f64, p: &V, v: &mut V| {
+    let problem = boxed_flow(free(), LeftTranslation, |t: f64, p: &V, v: &mut V| {
         *v = V::new(p.x * (t - 2.0), 0.0, 0.0)
     });
     let exact = |t: f64| V::new(0.05 * (0.5 * t * t - 2.0 * t - 6.0).exp(), 0.0, 0.0);
@@ -167,7 +167,7 @@ fn arguments_of_a_closure() {
     // x and y turn at 2, z is the logistic curve that reaches 0.99 at t = 5.
     let (omega, k, z_end): (f64, f64, f64) = (2.0, 4.0, 0.99);
     let z0 = (-5.0 * k).exp() / ((1.0 - z_end) / z_end + (-5.0 * k).exp());
-    let problem = Flow::new(free(), LeftTranslation, move |_: f64, p: &V, v: &mut V| {
+    let problem = boxed_flow(free(), LeftTranslation, move |_: f64, p: &V, v: &mut V| {
         *v = V::new(-omega * p.y, omega * p.x, k * p.z * (1.0 - p.z));
     });
     let method = Rk(DOP853);
@@ -216,7 +216,7 @@ fn an_observer_and_events_are_told_in_order() {
 fn a_jump_belongs_to_what_follows() {
     // x moves at rate 1; at t = 1 and 3 it is put back to 0.
     for (span, forward) in [([0.0, 4.0], 1.0), ([4.0, 0.0], -1.0)] {
-        let problem = Flow::of_time(free(), LeftTranslation, |_: f64, v: &mut V| *v = V::x());
+        let problem = boxed_of_time(free(), LeftTranslation, |_: f64, v: &mut V| *v = V::x());
         let method = Rk(DOPRI5);
         let put_back = |at: f64| {
             Event::new("back", move |t, _: &V| t - at).change(|_, p: &mut V| *p = V::zeros())

@@ -3,6 +3,7 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use crate::support::boxed::boxed_flow;
 use lieflow::actions::{LeftTranslation, Linear, Pair};
 use lieflow::catalog::MethodsByName;
 use lieflow::faer::Mat;
@@ -11,7 +12,7 @@ use lieflow::maps::{Exp, cay, dcayinv, dexp, dexpinv, exp};
 use lieflow::methods::tableau::DOPRI5;
 use lieflow::methods::{GAUSS4, GAUSS6, Gauss, Method, Rkmk, RkmkGauss};
 use lieflow::nalgebra::{Matrix3, Vector3};
-use lieflow::problems::{Flow, Problem};
+use lieflow::problems::Problem;
 use lieflow::{Error, SaveAt, Solve};
 
 type Shifts = Translations<Vector3<f64>>;
@@ -22,7 +23,7 @@ fn large_and_small(
 ) -> impl Problem<Group = Product<Shifts, Shifts>, Action = LeftTranslation, Work = ()> {
     let shifts = || Translations::new(Vector3::zeros(), 3);
     type Y = (Vector3<f64>, Vector3<f64>);
-    Flow::new(Product(shifts(), shifts()), LeftTranslation, move |_, y: &Y, v: &mut Y| {
+    boxed_flow(Product(shifts(), shifts()), LeftTranslation, move |_, y: &Y, v: &mut Y| {
         v.0 = slow * Vector3::new(-y.0.y, y.0.x, 0.0);
         v.1 = 3.0 * Vector3::new(-y.1.y, y.1.x, 0.0);
     })
@@ -62,10 +63,13 @@ fn an_implicit_step_solves_each_part() {
 #[test]
 fn a_rotation_is_checked_beside_a_large_vector() {
     type Y = (Matrix3<f64>, Vector3<f64>);
-    let flow =
-        Flow::new(Se3::new(), LeftTranslation, |_, _: &Y, v: &mut (Vector3<f64>, Vector3<f64>)| {
+    let flow = boxed_flow(
+        Se3::new(),
+        LeftTranslation,
+        |_, _: &Y, v: &mut (Vector3<f64>, Vector3<f64>)| {
             *v = (Vector3::z(), Vector3::zeros());
-        });
+        },
+    );
     let method = Rkmk::new(DOPRI5, Exp);
     let solve = || Solve::new(&flow, &method, [0.0, 1.0]).steps(10);
     for far in [1.0, 3e3, 7e6, 1e12] {
@@ -83,7 +87,7 @@ fn a_rotation_is_checked_beside_a_large_vector() {
 fn evaluations_of_rows_are_counted() {
     static CALLS: AtomicU64 = AtomicU64::new(0);
     let flow =
-        Flow::new(So3::<f64>::new(), Linear, |t: f64, x: &Vector3<f64>, v: &mut Vector3<f64>| {
+        boxed_flow(So3::<f64>::new(), Linear, |t: f64, x: &Vector3<f64>, v: &mut Vector3<f64>| {
             CALLS.fetch_add(1, Ordering::Relaxed);
             *v = Vector3::new(t.cos(), x.x, 1.0);
         });
@@ -126,7 +130,7 @@ fn evaluations_of_rows_are_counted() {
 fn parts_of_a_pair_are_checked() {
     type Y = (Matrix3<f64>, Vector3<f64>);
     let group = Product(So3::<f64>::new(), Translations::new(Vector3::zeros(), 3));
-    let flow = Flow::new(
+    let flow = boxed_flow(
         group,
         Pair(LeftTranslation, LeftTranslation),
         |_, _: &Y, v: &mut (Vector3<f64>, Vector3<f64>)| {
@@ -167,14 +171,14 @@ fn sizes_of_arguments_are_checked() {
     let group = || Translations::new(vec![0.0; 3].into_boxed_slice(), 3);
     let method = Rkmk::new(DOPRI5, Exp);
     for (y, f) in [(3, 3), (5, 3), (2, 3), (3, 2), (3, 4)] {
-        let flow = Flow::new(group(), LeftTranslation, move |_, _: &Numbers, v: &mut Numbers| {
+        let flow = boxed_flow(group(), LeftTranslation, move |_, _: &Numbers, v: &mut Numbers| {
             *v = numbers(f)
         });
         let run = Solve::new(&flow, &method, [0.0, 1.0]).steps(4).run(numbers(y));
         assert_eq!(run.is_ok(), (y, f) == (3, 3), "{y} {f}: {run:?}");
     }
     let zero = || Mat::<f64>::zeros(2, 2);
-    let flow = Flow::new(
+    let flow = boxed_flow(
         Translations::new(zero(), 4),
         LeftTranslation,
         |_, _: &Mat<f64>, _: &mut Mat<f64>| {},
@@ -191,7 +195,7 @@ fn an_implicit_step_solves_small_numbers() {
     for size in [1.0, 1e-9, 1e-15] {
         let shifts = Translations::new(Vector3::zeros(), 3);
         let flow =
-            Flow::new(shifts, LeftTranslation, |_, y: &Vector3<f64>, v: &mut Vector3<f64>| {
+            boxed_flow(shifts, LeftTranslation, |_, y: &Vector3<f64>, v: &mut Vector3<f64>| {
                 *v = 3.0 * Vector3::new(-y.y, y.x, 0.0);
             });
         let start = Vector3::new(size, 0.0, 0.0);

@@ -3,6 +3,7 @@
 use std::cell::Cell;
 use std::time::Duration;
 
+use crate::support::boxed::boxed_flow;
 use lieflow::actions::{LeftTranslation, Linear};
 use lieflow::catalog::MethodsByName;
 use lieflow::faer::Mat;
@@ -11,7 +12,6 @@ use lieflow::maps::Exp;
 use lieflow::methods::tableau::{BS3, DOP853, DOPRI5, HEUN, RK4};
 use lieflow::methods::{AnyMethod, Rk, Rkmk};
 use lieflow::nalgebra::{Matrix3, Vector3};
-use lieflow::problems::Flow;
 use lieflow::so3::exp;
 use lieflow::solve::Next;
 use lieflow::{Event, RunError, SaveAt, Solve, TimeGrid};
@@ -38,7 +38,7 @@ fn distance(g: &Matrix3<f64>, t: f64) -> f64 {
 #[test]
 fn stops_are_not_stepped_over() {
     let f = |t: f64, _: &Matrix3<f64>, v: &mut Vector3<f64>| *v = Vector3::new(0.0, 0.0, rate(t));
-    let flow = Flow::new(So3::new(), LeftTranslation, f);
+    let flow = boxed_flow(So3::new(), LeftTranslation, f);
     let (pair, equal) = (Rkmk::new(DOP853, Exp), Rkmk::new(RK4, Exp));
     let by_error = || Solve::new(&flow, &pair, [0.0, 10.0]).tolerances(1e-9, 1e-12).stops(PULSE);
     let by_size = || Solve::new(&flow, &equal, [0.0, 10.0]).dt(0.3).stops(PULSE);
@@ -79,7 +79,7 @@ fn stops_are_not_stepped_over() {
 #[test]
 fn stops_are_those_ahead() {
     let f = |t: f64, _: &Matrix3<f64>, v: &mut Vector3<f64>| *v = Vector3::new(0.0, 0.0, rate(t));
-    let flow = Flow::new(So3::new(), LeftTranslation, f);
+    let flow = boxed_flow(So3::new(), LeftTranslation, f);
     let pair = Rkmk::new(DOP853, Exp);
     let new = |span| Solve::new(&flow, &pair, span).tolerances(1e-9, 1e-12).stops(PULSE);
     let mut there = new([0.0, 5.0]).integrator(Matrix3::identity()).expect("a start");
@@ -100,7 +100,7 @@ fn stops_are_those_ahead() {
 #[test]
 fn times_one_rounding_apart_are_two() {
     let f = |t: f64, _: &Matrix3<f64>, v: &mut Vector3<f64>| *v = Vector3::new(0.0, 0.0, rate(t));
-    let flow = Flow::new(So3::new(), LeftTranslation, f);
+    let flow = boxed_flow(So3::new(), LeftTranslation, f);
     let (pair, equal) = (Rkmk::new(DOP853, Exp), Rkmk::new(RK4, Exp));
     for sign in [1.0, -1.0] {
         let after = |t: f64| if sign > 0.0 { t.next_up() } else { t.next_down() };
@@ -131,7 +131,7 @@ fn a_run_goes_on_after_an_error_of_f() {
     let f = |t: f64, g: &Matrix3<f64>, v: &mut Vector3<f64>| {
         *v = Vector3::new(g[(0, 1)], if broken.get() { f64::NAN } else { t.sin() }, 1.0);
     };
-    let flow = Flow::new(So3::new(), LeftTranslation, f);
+    let flow = boxed_flow(So3::new(), LeftTranslation, f);
     let method = Rkmk::new(DOPRI5, Exp);
     let new = || {
         let solve = Solve::new(&flow, &method, [0.0, 5.0]).tolerances(1e-8, 1e-10);
@@ -185,7 +185,7 @@ fn split_steps_have_the_error_that_is_stated() {
     let f = |t: f64, g: &Matrix3<f64>, v: &mut Vector3<f64>| {
         *v = Vector3::new((2.0 * t).sin(), g.m11, 0.5);
     };
-    let flow = Flow::new(So3::new(), LeftTranslation, f);
+    let flow = boxed_flow(So3::new(), LeftTranslation, f);
     let (fine, heun, rk4) = (Rkmk::new(DOP853, Exp), Rkmk::new(HEUN, Exp), Rkmk::new(RK4, Exp));
     let right = Solve::new(&flow, &fine, [0.0, 3.0]).dt(1e-3).run(Matrix3::identity());
     let right = right.expect("a run").y;
@@ -214,7 +214,7 @@ fn split_steps_have_the_error_that_is_stated() {
 #[test]
 fn f_may_change_where_a_step_ends() {
     let rate = Cell::new(1.0);
-    let flow = Flow::new(Translations::new(0.0, 1), LeftTranslation, |_, _: &f64, v: &mut f64| {
+    let flow = boxed_flow(Translations::new(0.0, 1), LeftTranslation, |_, _: &f64, v: &mut f64| {
         *v = rate.get()
     });
     macro_rules! check {
@@ -255,7 +255,7 @@ fn points_of_other_sizes_are_refused() {
     let group = MatrixGroup::so(5).expect("SO(5)");
     let zero = group.zero();
     let field = |_: f64, _: &Mat<f64>, v: &mut AlgebraMatrix| v.clone_from(&zero);
-    let flow = Flow::new(group, Linear, field);
+    let flow = boxed_flow(group, Linear, field);
     let start = Mat::from_fn(5, 1, |i, _| i as f64);
     let wide = || Mat::<f64>::zeros(5, 3);
     for name in ["rk4", "rk dopri5", "rkmk4", "cf4", "gauss4"] {
@@ -288,7 +288,7 @@ fn points_of_other_sizes_are_refused() {
     }
     type Vectors = Box<[Vector3<f64>]>;
     let copies = Power::new(So3::<f64>::new(), 3).expect("copies");
-    let still = Flow::new(copies, Linear, |_, _: &Vectors, _: &mut Vectors| {});
+    let still = boxed_flow(copies, Linear, |_, _: &Vectors, _: &mut Vectors| {});
     let method = Rkmk::new(RK4, Exp);
     let start: Vectors = vec![Vector3::x(); 3].into();
     let solve = Solve::new(&still, &method, [0.0, 1.0]).dt(0.5);
@@ -306,7 +306,7 @@ fn points_of_other_sizes_are_refused() {
 #[test]
 fn each_call_has_the_limit_of_attempts() {
     let f = |_: f64, _: &Matrix3<f64>, v: &mut Vector3<f64>| *v = Vector3::new(0.0, 0.0, 0.1);
-    let flow = Flow::new(So3::new(), LeftTranslation, f);
+    let flow = boxed_flow(So3::new(), LeftTranslation, f);
     let method = Rkmk::new(DOPRI5, Exp);
     let solve = |by_error: bool| {
         let solve = Solve::new(&flow, &method, [0.0, f64::INFINITY]).max_steps(100);
@@ -350,7 +350,7 @@ fn each_call_has_the_limit_of_attempts() {
 #[test]
 fn a_start_with_few_digits_is_corrected_at_once() {
     let f = |_: f64, _: &Matrix3<f64>, v: &mut Vector3<f64>| *v = Vector3::new(0.1, 0.2, 0.3);
-    let flow = Flow::new(So3::new(), LeftTranslation, f);
+    let flow = boxed_flow(So3::new(), LeftTranslation, f);
     let rough =
         exp(&Vector3::new(1.0, 2.0, 3.0)).expect("an angle").map(|x: f64| f64::from(x as f32));
     let method = Rkmk::new(DOP853, Exp);
@@ -370,7 +370,7 @@ fn a_start_with_few_digits_is_corrected_at_once() {
 #[test]
 fn a_run_by_hand_goes_on_from_bytes() {
     let f = |_: f64, _: &Matrix3<f64>, v: &mut Vector3<f64>| *v = Vector3::new(0.0, 0.0, 0.1);
-    let flow = Flow::new(So3::new(), LeftTranslation, f);
+    let flow = boxed_flow(So3::new(), LeftTranslation, f);
     let method = Rkmk::new(RK4, Exp);
     let solve = || Solve::new(&flow, &method, [0.0, 10.0]).dt(0.1);
     let mut first = solve().integrator(Matrix3::identity()).expect("a start");

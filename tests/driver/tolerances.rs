@@ -6,13 +6,14 @@ use lieflow::groups::{Product, Se3, So3, Translations};
 use lieflow::maps::Exp;
 use lieflow::methods::tableau::{BS3, DOPRI5};
 use lieflow::methods::{Embedded, Rk, Rkmk};
-use lieflow::problems::{Flow, PointOf, Problem, RigidBody};
+use lieflow::problems::{PointOf, Problem, RigidBody};
 use lieflow::tolerance::{PartTolerance, Rule, Tolerance};
 use lieflow::{LieAlgebra, RunError, Solve, Step, StepControl};
 use nalgebra::{Matrix3, Vector3};
 
 use crate::modes::V;
 use crate::scipy::free;
+use crate::support::boxed::{boxed_flow, boxed_of_time};
 
 /// The ratio of one step with a tolerance.
 fn ratio<P: Problem<Group: LieAlgebra<Scalar = f64>>, M: Embedded<P>>(
@@ -39,7 +40,7 @@ fn near(found: f64, expected: f64) {
 #[test]
 fn of_a_vector() {
     let field = |t: f64| V::new((9.0 * t).cos(), (8.0 * t).sin(), 1e-3 * (7.0 * t).cos());
-    let problem = Flow::of_time(free(), LeftTranslation, move |t: f64, v: &mut V| *v = field(t));
+    let problem = boxed_of_time(free(), LeftTranslation, move |t: f64, v: &mut V| *v = field(t));
     let (method, y) = (Rk(BS3), V::new(300.0, -40.0, 0.0));
     // The error itself, from the rows of the pair: 5/72, −1/12, −1/9, 1/8.
     let e = 0.3
@@ -78,13 +79,13 @@ fn of_a_vector() {
 fn of_a_rotation() {
     let field = |t: f64, v: &mut V| *v = V::new((9.0 * t).cos(), (8.0 * t).sin(), 0.3);
     let (method, so3) = (Rkmk::new(BS3, Exp), So3::<f64>::new());
-    let attitude = Flow::of_time(so3, LeftTranslation, field);
+    let attitude = boxed_of_time(so3, LeftTranslation, field);
     let of = |tolerance| ratio(&attitude, &method, tolerance, &Matrix3::identity());
     let angle = of(both(0.0, 1.0));
     assert!(angle > 1e-4);
     near(of(both(1e-6, 0.0)), angle / 1e-6);
     near(of(both(1e-6, 3e-6)), angle / 4e-6);
-    let vector = Flow::of_time(so3, Linear, field);
+    let vector = boxed_of_time(so3, Linear, field);
     let y = V::new(0.0, 30.0, 40.0);
     near(ratio(&vector, &method, both(0.0, 1e-6), &y), 50.0 * angle / 1e-6);
     near(ratio(&vector, &method, both(1e-6, 0.0), &y), angle / 1e-6);
@@ -96,7 +97,7 @@ type Both = (Matrix3<f64>, V);
 /// An attitude that turns, and a vector that moves on its own.
 fn beside() -> impl Problem<Group = Product<So3, Translations<V>>, Action = LeftTranslation> {
     let group = Product(So3::new(), free());
-    Flow::new(group, LeftTranslation, |t: f64, y: &Both, v: &mut (V, V)| {
+    boxed_flow(group, LeftTranslation, |t: f64, y: &Both, v: &mut (V, V)| {
         *v = (
             V::new((2.0 * t).cos(), 0.4, t.sin()),
             V::new(-2.0 * t * y.1.x * y.1.x, y.1.x * y.1.y, -0.5 * y.1.z),
@@ -150,7 +151,7 @@ fn each_part_has_its_own() {
 #[test]
 fn each_component_has_its_own() {
     // x and y are independent of one another: cos and sin at 3, and a slow z.
-    let problem = Flow::new(free(), LeftTranslation, |_: f64, y: &V, v: &mut V| {
+    let problem = boxed_flow(free(), LeftTranslation, |_: f64, y: &V, v: &mut V| {
         *v = V::new(-3.0 * y.y, 3.0 * y.x, -y.z)
     });
     let method = Rk(DOPRI5);
@@ -197,7 +198,7 @@ fn a_wrong_number_of_them_is_told() {
         Solve::new(&problem, &method, [0.0, 1.0]).tolerance(tolerance).run(START).expect("a run");
     }
     // SE(3) has two parts.
-    let se3 = Flow::of_time(Se3::<f64>::new(), LeftTranslation, |t: f64, v: &mut (V, V)| {
+    let se3 = boxed_of_time(Se3::<f64>::new(), LeftTranslation, |t: f64, v: &mut (V, V)| {
         *v = (V::z() * t, V::x())
     });
     let at = (Matrix3::identity(), V::zeros());
@@ -219,14 +220,14 @@ fn a_wrong_number_of_them_is_told() {
             assert!(said.contains("atol") && said.contains(&count.to_string()), "{said}");
         }
     }
-    let array = Flow::of_time(
+    let array = boxed_of_time(
         Translations::new([0.0; 2], 2),
         LeftTranslation,
         |t: f64, v: &mut [f64; 2]| *v = [t, 1.0],
     );
     // A rotation has no components, and the rule by the length has one tolerance.
     let turn =
-        Flow::of_time(So3::<f64>::new(), LeftTranslation, |t: f64, v: &mut V| *v = V::z() * t);
+        boxed_of_time(So3::<f64>::new(), LeftTranslation, |t: f64, v: &mut V| *v = V::z() * t);
     let two = || PartTolerance::per_component(1e-6, [1e-6, 1e-3]).expect("tolerances");
     Solve::new(&array, &method, [0.0, 1.0]).tolerance(two().into()).run([0.0; 2]).expect("a run");
     let failed =
@@ -253,7 +254,7 @@ fn a_wrong_number_of_them_is_told() {
 #[test]
 fn by_the_step_and_by_the_length() {
     let problem =
-        Flow::of_time(free(), LeftTranslation, |t: f64, v: &mut V| *v = V::new(t.cos(), 0.0, 0.0));
+        boxed_of_time(free(), LeftTranslation, |t: f64, v: &mut V| *v = V::new(t.cos(), 0.0, 0.0));
     let method = Rkmk::new(DOPRI5, Exp);
     let run = |rule: Rule, offset: f64, rtol: f64| {
         let start = V::new(0.0, offset, 0.0);
@@ -286,7 +287,7 @@ fn by_the_step_and_by_the_length() {
 fn rtol_alone_from_zero() {
     let group = Product(So3::<f64>::new(), free());
     let action = lieflow::actions::Pair(LeftTranslation, LeftTranslation);
-    let flow = Flow::new(group, action, |t: f64, y: &(Matrix3<f64>, V), v: &mut (_, V)| {
+    let flow = boxed_flow(group, action, |t: f64, y: &(Matrix3<f64>, V), v: &mut (_, V)| {
         v.0 = Vector3::new(0.3, t.cos(), 0.1) + y.1;
         v.1 = V::new(t, (3.0 * t).sin(), 1.0);
     });
@@ -337,7 +338,7 @@ fn the_hardest_place_of_a_run_is_known() {
     let run = |strength: f64| {
         let rate = move |t: f64| 0.1 + strength * (-((t - 6.3) / 0.02f64).powi(2)).exp();
         let turning = move |t: f64, v: &mut V| *v = V::new(rate(t), 0.0, 0.0);
-        let problem = Flow::of_time(So3::<f64>::new(), Linear, turning);
+        let problem = boxed_of_time(So3::<f64>::new(), Linear, turning);
         let method = Rkmk::new(BS3, Exp);
         let solve = Solve::new(&problem, &method, [0.0, end]).max_step(0.1);
         solve.tolerances(1e-8, 1e-8).run(start).expect("a run").stats
@@ -351,7 +352,7 @@ fn the_hardest_place_of_a_run_is_known() {
 #[test]
 fn the_unit_of_a_vector_does_not_count() {
     let turning = |t: f64, y: &V, v: &mut V| *v = V::new(-y.y, y.x, 0.3 * t.cos() * y.z);
-    let (problem, method) = (Flow::new(free(), LeftTranslation, turning), Rkmk::new(DOPRI5, Exp));
+    let (problem, method) = (boxed_flow(free(), LeftTranslation, turning), Rkmk::new(DOPRI5, Exp));
     let run = |unit: f64| {
         let solve = Solve::new(&problem, &method, [1e3, 1.01e3]).tolerances(1e-6, 0.0);
         solve.run(V::new(unit, 0.0, unit)).expect("a run")
@@ -371,7 +372,7 @@ fn the_unit_of_a_vector_does_not_count() {
 #[test]
 fn a_large_part_hides_no_error() {
     let group = Product(So3::<f64>::new(), free());
-    let problem = Flow::new(group, LeftTranslation, |t: f64, _: &Both, v: &mut (V, V)| {
+    let problem = boxed_flow(group, LeftTranslation, |t: f64, _: &Both, v: &mut (V, V)| {
         *v = (V::new(t.cos(), (2.0 * t).sin(), 1.0), V::zeros());
     });
     for method in ["cf43", "rkmk4", "cf4", "cg3", "rkmk dopri5"] {

@@ -1,6 +1,7 @@
 //! An error in 𝔤 is weighed by what it does to the parts of a point: a run meets its tolerance also where it moves a part by
 //! the size of another one.
 
+use crate::support::boxed::{boxed_flow, boxed_of_time};
 use lieflow::actions::{Coadjoint, Lagrangian, Linear, Pair};
 use lieflow::faer::{c64, mat};
 use lieflow::groups::{
@@ -79,8 +80,8 @@ fn a_top_from_rest() {
 fn riccati_equations_of_any_size() {
     let sp = || MatrixGroup::sp(2).expect("a group");
     let large =
-        Flow::of_time(sp(), Lagrangian, |t: f64, v| v[(0, 1)] = 1e-6 * (1.0 + (20.0 * t).cos()));
-    let small = Flow::of_time(sp(), Lagrangian, |t: f64, v| {
+        boxed_of_time(sp(), Lagrangian, |t: f64, v| v[(0, 1)] = 1e-6 * (1.0 + (20.0 * t).cos()));
+    let small = boxed_of_time(sp(), Lagrangian, |t: f64, v| {
         (v[(0, 1)], v[(1, 0)]) = (1.0, 1e-6 * (2.0 * t).cos());
     });
     let method = Rkmk::new(DOPRI5, Exp);
@@ -95,7 +96,7 @@ fn riccati_equations_of_any_size() {
         assert!((p / (0.5e-6 * 4f64.sin()) - 1.0).abs() < 3e-6, "{p:e}");
     }
     // A step to a pole, and one from it, are steps.
-    let pole = Flow::of_time(sp(), Lagrangian, |_, v| (v[(1, 0)], v[(0, 1)]) = (1.0, -1.0));
+    let pole = boxed_of_time(sp(), Lagrangian, |_, v| (v[(1, 0)], v[(0, 1)]) = (1.0, -1.0));
     let method = Rkmk::new(DOP853, Exp);
     let pi_2 = core::f64::consts::FRAC_PI_2;
     for stop in [pi_2, pi_2 - 1e-7, 1.5] {
@@ -111,7 +112,7 @@ fn components_that_are_small_have_their_tolerances() {
     let f = |t: f64, _: &Vector3<f64>, v: &mut Vector3<f64>| {
         *v = Vector3::new(5.0, 1e-5 * (2.0 * t).cos(), 1e-5 * (2.0 * t).sin());
     };
-    let flow = Flow::new(So3::<f64>::new(), Linear, f);
+    let flow = boxed_flow(So3::<f64>::new(), Linear, f);
     let (method, fine) = (Rkmk::new(DOPRI5, Exp), Rkmk::new(DOP853, Exp));
     let tolerance = PartTolerance::per_component(1e-13, [1e-3, 1e-9, 1e-9]).expect("a tolerance");
     let run = Solve::new(&flow, &method, [0.0, 10.0]).tolerance(tolerance.into()).run(Vector3::x());
@@ -170,7 +171,7 @@ fn states_of_unitary_groups_are_finite() {
     };
     let method = Rkmk::new(DOPRI5, Exp);
     let group = Product(u2, So3::new());
-    let pair = Flow::new(
+    let pair = boxed_flow(
         group,
         Pair(Coadjoint, Linear),
         |t: f64, _: &_, v: &mut (ComplexMatrix, Vector3<f64>)| {
@@ -180,7 +181,7 @@ fn states_of_unitary_groups_are_finite() {
     assert!(group.zero().1 == Vector3::zeros());
     let solve = Solve::new(&pair, &method, [0.0, 1.0]).tolerances(1e-6, 1e-9);
     refused(solve.run((rho, Vector3::x())).map(drop).map_err(|failed| failed.error));
-    let one = Flow::of_time(u2, Linear, |t: f64, v: &mut ComplexMatrix| v.im[(0, 0)] = t.cos());
+    let one = boxed_of_time(u2, Linear, |t: f64, v: &mut ComplexMatrix| v.im[(0, 0)] = t.cos());
     let solve = Solve::new(&one, &method, [0.0, 1.0]).tolerances(1e-6, 1e-9);
     refused(solve.run(psi.clone()).map(drop).map_err(|failed| failed.error));
     let plain = Rkmk::new(RK4, Exp);
@@ -196,7 +197,7 @@ fn a_riccati_equation_in_a_pair() {
         (v.0[(1, 0)], v.0[(0, 1)]) = (1.0, -1.0);
         v.1 = Vector3::z();
     };
-    let flow = Flow::new(group, Pair(Lagrangian, Linear), f);
+    let flow = boxed_flow(group, Pair(Lagrangian, Linear), f);
     let method = Rkmk::new(DOP853, Exp);
     let pi_2 = core::f64::consts::FRAC_PI_2;
     for stop in [pi_2, pi_2 - 1e-7] {

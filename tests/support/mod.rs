@@ -4,6 +4,7 @@
 //! holds, `mutations/faults.rs` asks that it fails on a method broken on purpose.
 #![allow(dead_code, unused_imports, reason = "each suite uses its part")]
 
+pub(crate) mod boxed;
 pub(crate) mod laws;
 pub(crate) mod named;
 pub(crate) mod orders;
