@@ -2,7 +2,7 @@
 //!
 //! From the momentum m at the start, m⁺ = m(h) and g⁺ = g Ψ(h) by Jacobi's elliptic functions
 //! ([`Exact`]). Order: unbounded, reported as `usize::MAX`. Preserves: everything, to the
-//! rounding of a step. Cost: the constants of one orbit and its point at one time, at any h; further points from the same
+//! rounding of a step, whose phase does not drift in steps of one size. Cost: the constants of one orbit and its point at one time, at any h; further points from the same
 //! start, as the output times within a step, need no new constants. It computes in f64 for every scalar type. To follow
 //! one orbit without a run use [`Exact`].
 //! Source: C. G. J. Jacobi, J. reine angew. Math. 39 (1850); see [`Exact`].
@@ -12,7 +12,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::{Embedded, Facts, MapCounts, Method, Step, Symmetric};
 use crate::error::{Error, StepError};
 use crate::groups::{LieAlgebra, So3};
-use crate::problems::{Exact, Frame, FreeBody, PointOf, ScalarOf};
+use crate::problems::{Exact, Frame, FreeBody, Place, PointOf, ScalarOf};
 use crate::scalar::{Real, power_of_two};
 use crate::space::Metric;
 use crate::tolerance::Tolerance;
@@ -30,32 +30,38 @@ pub struct ExactWork {
     /// The momentum at the start of that step.
     start: Vector3<f64>,
     orbit: Exact,
+    /// Its place at the start, as the formulas give it.
+    origin: Option<Place>,
 }
 
 impl ExactWork {
-    /// The orbit from this momentum and the attitude 𝟙.
+    /// The change of the momentum over a time h from this momentum, and D with the rotation 𝟙 + D over that time.
     #[inline]
-    fn orbit(&mut self, start: Vector3<f64>) -> Result<&Exact, Error> {
+    fn moved(
+        &mut self,
+        start: Vector3<f64>,
+        h: f64,
+    ) -> Result<(Vector3<f64>, Matrix3<f64>), Error> {
         if self.start != start {
             self.orbit = Exact::new(self.inertia, start.into(), Matrix3::identity())?;
+            self.origin = self.orbit.place(0.0)?;
             self.start = start;
         }
-        Ok(&self.orbit)
+        self.orbit.change(self.origin.as_ref(), h)
     }
 
-    /// The change from `old` to `new` with the length and the energy of `old`, by a step of Newton's iteration. Both are about
-    /// 1 long.
+    /// This change of `old` with the length and the energy of `old`, by a step of Newton's iteration. `old` is about 1 long.
     ///
     /// The energy is taken relative to that of a rotation about the axis of the largest component. All differences are those
     /// over the step, so that their rounding is relative to it.
     #[inline]
-    fn change(&self, old: &Vector3<f64>, new: &Vector3<f64>) -> Vector3<f64> {
-        let change = new - old;
+    fn change(&self, old: &Vector3<f64>, change: Vector3<f64>) -> Vector3<f64> {
+        let new = old + change;
         let gone = -change.component_mul(&(old + new));
         let squared = new.norm_squared();
         let axis = self.inertia[new.iamax()];
         let rates = Vector3::from(self.inertia).map(|inertia| (axis - inertia) / inertia);
-        let mean = rates.dot(&new.component_mul(new)) / squared;
+        let mean = rates.dot(&new.component_mul(&new)) / squared;
         let rates = rates.add_scalar(-mean);
         let across = new.component_mul(&rates);
         let steep = across.norm_squared();
@@ -88,7 +94,7 @@ where
         let inertia = [0, 1, 2].map(|k| 1.0 / problem.inverse_inertia()[k].into());
         let at_rest = Vector3::zeros();
         let orbit = Exact::new(inertia, at_rest.into(), Matrix3::identity())?;
-        Ok(ExactWork { inertia, start: at_rest, orbit })
+        Ok(ExactWork { inertia, start: at_rest, orbit, origin: None })
     }
     #[inline]
     fn step(
@@ -101,19 +107,19 @@ where
         let (m, mut frame) = problem.load(y);
         let before: Vector3<f64> = m.map(Into::into);
         let failed = StepError::NotFinite { what: "the exact motion" };
-        let moved = work.orbit(before).and_then(|orbit| orbit.state(h.into()));
-        let (next, turn) = moved.map_err(|_| failed)?;
+        let (change, d) = work.moved(before, h.into()).map_err(|_| failed)?;
         // Both are right to ε, but the same h rounds them the same way in every step: a step of Newton's
         // iteration each takes them back to |m| and the energy, and to the group. The rotation takes m to m⁺, as a problem
         // needs it whose state is the attitude alone.
         let size = power_of_two(before.amax());
-        let (next, turn) = match [before, next].map(|m| m / size) {
-            [old, _] if old.amax() == 0.0 => (next, turn),
-            [old, new] => {
-                let (change, one) = (work.change(&old, &new), Matrix3::identity());
-                ((old + change) * size, one + corrected(turn - one, &old, &change))
+        let (next, d) = match before / size {
+            old if old.amax() == 0.0 => (before, d),
+            old => {
+                let change = work.change(&old, change / size);
+                ((old + change) * size, corrected(d, &old, &change))
             }
         };
+        let turn = Matrix3::identity() + d;
         let group = So3::<f64>::new();
         if !(group.is_finite(&next) && turn.iter().all(|x| x.is_finite())) {
             return Err(failed);

@@ -89,6 +89,7 @@ pub use oja::Oja;
 #[cfg(feature = "dense")]
 pub use periodic::{LinearHamiltonian, hill, mathieu};
 pub use quaternion_body::RigidBodyQuaternion;
+pub(crate) use rigid_body::Place;
 pub use rigid_body::{
     BodyFrame, BodyState, Exact, Frame, FreeBody, RigidBody, RigidBodyAttitude, RigidBodyState,
 };

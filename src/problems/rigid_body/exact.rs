@@ -29,7 +29,7 @@ use crate::error::{Error, StepError};
 use crate::groups::So3;
 use crate::maps::{CoordinateMap, Exp};
 use crate::scalar::{ROUND, Trig, power_of_two};
-use crate::so3::cross;
+use crate::so3::{cross, dexp_matrix};
 
 /// The exact motion of a free rigid body: m(t) and g(t) at any time t, without steps.
 ///
@@ -71,6 +71,9 @@ struct Elliptic {
     /// The power of two that m was divided by, and that time is multiplied by.
     m_scale: f64,
     t_scale: f64,
+    /// The moments of inertia and |m| in these units.
+    inertia: Vector3<f64>,
+    length: f64,
     lambda: f64,
     tau0: f64,
     /// 1 − k².
@@ -161,9 +164,41 @@ impl Exact {
                 let (m, g) = motion.state(t)?;
                 Ok((finite(m)?, g))
             }
-            Orbit::Steady => {
-                let angle = Vector3::from_fn(|i, _| self.m0[i] / self.inertia[i] * t);
-                Ok((self.m0, self.g0 * Exp.eval(&So3::new(), &angle)?))
+            Orbit::Steady => Ok((self.m0, self.g0 * Exp.eval(&So3::new(), &self.angle(t))?)),
+        }
+    }
+
+    /// ωt of a rotation about a fixed axis.
+    fn angle(&self, t: f64) -> Vector3<f64> {
+        Vector3::from_fn(|i, _| self.m0[i] / self.inertia[i] * t)
+    }
+
+    /// The place at a time as the formulas give it. At t = 0 it differs from the start by their rounding. `None` for a rotation
+    /// about a fixed axis.
+    #[inline]
+    pub(crate) fn place(&self, t: f64) -> Result<Option<Place>, Error> {
+        match &self.motion {
+            Orbit::Elliptic(motion) => motion.place(t * motion.t_scale).map(Some),
+            Orbit::Steady => Ok(None),
+        }
+    }
+
+    /// The change of m over the time t, and D with the rotation 𝟙 + D over it, g(t) = g₀(𝟙 + D). `origin` is the place at
+    /// t = 0.
+    ///
+    /// Both are differences of two results of the same formulas, and their rounding is relative to them. What the formulas round
+    /// in the same way at each place of the orbit cancels from step to step. Steps of one size thus do not drift.
+    #[inline]
+    pub(crate) fn change(
+        &self,
+        origin: Option<&Place>,
+        t: f64,
+    ) -> Result<(Vector3<f64>, Matrix3<f64>), Error> {
+        match (&self.motion, origin) {
+            (Orbit::Elliptic(motion), Some(origin)) => motion.change(origin, t * motion.t_scale),
+            _ => {
+                let angle = self.angle(t);
+                Ok((Vector3::zeros(), angle.cross_matrix() * dexp_matrix(&angle)?))
             }
         }
     }
@@ -213,6 +248,24 @@ struct Phase {
     sn: f64,
     cn: f64,
     dn: f64,
+}
+
+/// A place of the motion: g = S₀ R_z(turn + rest) Tᵀ.
+#[derive(Clone, Debug)]
+pub(crate) struct Place {
+    m: Vector3<f64>,
+    /// T(m).
+    triad: Matrix3<f64>,
+    /// (sin, cos) of the part of φ that grows with t.
+    turn: (f64, f64),
+    /// (sin, cos) of the rest of φ, which depends on the place of m alone.
+    rest: (f64, f64),
+}
+
+/// (sin, cos) of the sum of two angles.
+#[inline]
+fn sum((s, c): (f64, f64), (other_s, other_c): (f64, f64)) -> (f64, f64) {
+    (s * other_c + c * other_s, c * other_c - s * other_s)
 }
 
 /// R_z(φ) from (sin φ, cos φ).
@@ -301,6 +354,8 @@ impl Elliptic {
             amplitude,
             m_scale,
             t_scale: m_scale / j_scale,
+            inertia: j.into(),
+            length,
             lambda,
             tau0,
             kc2,
@@ -365,7 +420,7 @@ impl Elliptic {
         match &self.fast {
             Some(fast) => {
                 let (v, sign) = fast.angle(self.lambda * t + self.tau0);
-                self.place(sign, fast.theta.jacobi(v))
+                self.momentum_at(sign, fast.theta.jacobi(v))
             }
             None => self.place_at(&self.phase(t)),
         }
@@ -374,21 +429,57 @@ impl Elliptic {
     /// m and g = S₀ R_z(φ) T(m)ᵀ.
     #[inline]
     fn state(&self, t: f64) -> Result<(Vector3<f64>, Matrix3<f64>), Error> {
-        let t = t * self.t_scale;
-        let (m, turned) = match &self.fast {
-            Some(fast @ Fast { theta, s0, .. }) => {
+        let Place { m, triad, turn, rest } = self.place(t * self.t_scale)?;
+        let s0 = self.fast.as_ref().map_or(&self.s0, |fast| &fast.s0);
+        Ok((m, s0 * about_z(sum(turn, rest)) * triad.transpose()))
+    }
+
+    #[inline]
+    fn place(&self, t: f64) -> Result<Place, Error> {
+        let (m, turn, rest) = match &self.fast {
+            Some(fast) => {
                 let (v, sign) = fast.angle(self.lambda * t + self.tau0);
-                let (p, (s, c)) = (self.periodic(theta, v), fast.turn(t));
-                let sum = (s * p.1 + c * p.0, c * p.1 - s * p.0);
-                (self.place(sign, theta.jacobi(v)), s0 * about_z(sum))
+                let rest = self.periodic(&fast.theta, v);
+                (self.momentum_at(sign, fast.theta.jacobi(v)), fast.turn(t), rest)
             }
             None => {
                 let phase = self.phase(t);
                 let phi = Trig::sin_cos(self.precession(t, &phase)?);
-                (self.place_at(&phase), self.s0 * about_z(phi))
+                (self.place_at(&phase), phi, (0.0, 1.0))
             }
         };
-        Ok((m, turned * triad(&m, self.axes[2]).transpose()))
+        Ok(Place { m, triad: triad(&m, self.axes[2]), turn, rest })
+    }
+
+    /// See [`Exact::change`].
+    #[inline]
+    fn change(&self, origin: &Place, t: f64) -> Result<(Vector3<f64>, Matrix3<f64>), Error> {
+        let place = self.place(t)?;
+        let (s, c) = sum(place.turn, sum(place.rest, (-origin.rest.0, origin.rest.1)));
+        let less = if c > 0.0 { -s * s / (1.0 + c) } else { c - 1.0 };
+        let turn = Matrix3::new(less, -s, 0.0, s, less, 0.0, 0.0, 0.0, 0.0);
+        let moved = (place.triad - origin.triad).transpose();
+        let d = origin.triad * (turn * place.triad.transpose() + moved);
+        let (lost, late) = self.lost(t, &place.m);
+        let late = late.cross_matrix();
+        Ok(((place.m - origin.m) + lost, d + (late + d * late)))
+    }
+
+    /// The change of m and the rotation in the body that the rounding of the phase λt + τ₀ takes away: ṁ and the rate of the turn
+    /// without that part of φ that grows with t, times the time that is lost.
+    ///
+    /// It is less than the last digit of m. But in steps of one size it is the same in all of them, and adds up.
+    #[inline]
+    fn lost(&self, t: f64, m: &Vector3<f64>) -> (Vector3<f64>, Vector3<f64>) {
+        let (added, tau) = (self.lambda * t, self.lambda * t + self.tau0);
+        let start = tau - added;
+        let rest = (added - (tau - start)) + (self.tau0 - start);
+        let time = (rest + self.lambda.mul_add(t, -added)) / self.lambda;
+        let m = m / self.m_scale;
+        let omega = m.component_div(&self.inertia);
+        let mean = self.fast.as_ref().map_or(self.base, |fast| fast.rate[0] + fast.rate[1]);
+        let turn = omega - m * (mean / self.length);
+        (cross(&m, &omega) * (time * self.m_scale), turn * time)
     }
 
     fn phase(&self, t: f64) -> Phase {
@@ -404,11 +495,11 @@ impl Elliptic {
     }
 
     fn place_at(&self, &Phase { half_turns, sn, cn, dn, .. }: &Phase) -> Vector3<f64> {
-        self.place(if half_turns % 2.0 == 0.0 { 1.0 } else { -1.0 }, (sn, cn, dn))
+        self.momentum_at(if half_turns % 2.0 == 0.0 { 1.0 } else { -1.0 }, (sn, cn, dn))
     }
 
     #[inline]
-    fn place(&self, sign: f64, (sn, cn, dn): (f64, f64, f64)) -> Vector3<f64> {
+    fn momentum_at(&self, sign: f64, (sn, cn, dn): (f64, f64, f64)) -> Vector3<f64> {
         let mut m = Vector3::zeros();
         m[self.axes[0]] = self.m_scale * self.amplitude[0] * sign * cn;
         m[self.axes[1]] = self.m_scale * self.amplitude[1] * sign * sn;

@@ -15,6 +15,7 @@ mod theta;
 pub(super) use closed::apply_transpose;
 pub use closed::{RigidBody, RigidBodyAttitude};
 pub use exact::Exact;
+pub(crate) use exact::Place;
 pub use free::{Frame, FreeBody};
 #[cfg(feature = "dense")]
 pub use general::{RigidBodyN, RigidBodyNAttitude};
