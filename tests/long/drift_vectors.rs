@@ -2,11 +2,14 @@
 //! started on. Without it rounding walks at random, ½ε√n at most in what was measured, and where every step is
 //! the same rotation it errs the same way each time, by up to 1.3 ε a step.
 
+use core::cell::Cell;
+
 use crate::support::uncorrected::{Uncorrected, cpu_seconds};
 use faer::{Mat, c64};
 use lieflow::actions::{Coadjoint, LeftTranslation, Linear, Pair};
 use lieflow::groups::{
-    ComplexMatrix, LieAlgebra, LieGroup, Power, Product, So3, Translations, Unitary,
+    AlgebraMatrix, ComplexMatrix, LieAlgebra, LieGroup, MatrixGroup, Power, Product, So3,
+    Translations, Unitary,
 };
 use lieflow::maps::{Cay, Exp};
 use lieflow::methods::magnus::Magnus4;
@@ -267,6 +270,77 @@ fn only_rounding_is_taken_back() {
     }
     let mut none = V::from_element(f64::NAN);
     assert!(so3.correct_vector(&start, &mut none).is_some_and(f64::is_nan));
+}
+
+/// xᵀMx on SO(3,1), of vectors of positive, negative and no square, where every step is the same matrix.
+#[test]
+fn vectors_keep_the_form_of_their_group() {
+    let group = MatrixGroup::indefinite(3, 1).expect("SO(3,1)");
+    let m = group.m().expect("a form");
+    let square = |x: &Mat<f64>| (x.transpose() * &m * x)[(0, 0)];
+    // A magnetic field that is stronger than the electric one, and orthogonal to it: the motion stays bounded.
+    let field = faer::mat![
+        [0.0, 1.1, 0.3, 0.3],
+        [-1.1, 0.0, 0.7, 0.7],
+        [-0.3, -0.7, 0.0, 0.0],
+        [0.3, 0.7, 0.0, 0.0],
+    ];
+    let turn = Flow::of_time(group.clone(), Linear, |_: f64, v: &mut AlgebraMatrix| {
+        v.copy_from(&field);
+    });
+    for x in [[0.3, 0.2, 0.1, 1.5], [2.0, 0.4, 1.0, 0.5], [0.6, 0.0, 0.8, 1.0]] {
+        let start = Mat::from_fn(4, 1, |i, _| x[i]);
+        // Relative to the largest |x|² so far: the orbit is an ellipse.
+        let largest = Cell::new(0.0f64);
+        let of = |x: &Mat<f64>| {
+            largest.set(largest.get().max(x.squared_norm_l2()));
+            1.0 + (square(x) - square(&start)) / largest.get()
+        };
+        let found = [
+            drift(&turn, &Rkmk::new(RK4, Exp), &start, of),
+            drift(&turn, &Rkmk::new(RK4, Cay), &start, of),
+            drift(&turn, &CommutatorFree(CF4), &start, of),
+        ];
+        println!("{x:?}: {found:?}");
+        assert!(found.iter().all(|x| *x < 3.0 * HELD), "{x:?}: {found:?}");
+    }
+}
+
+/// A vector goes back to the nearest one with its xᵀMx, whatever M is, and stays where rounding would move it farther.
+#[test]
+fn the_nearest_vector_with_the_same_form() {
+    let mixed = faer::mat![[2.0, 0.5, 0.0], [-0.3, 1.5, 0.4], [0.2, 0.0, -1.0]];
+    let group = MatrixGroup::gm(mixed.clone()).expect("a group");
+    let square = |x: &Mat<f64>| (x.transpose() * &mixed * x)[(0, 0)];
+    let start = Mat::from_fn(3, 1, |i, _| [0.6, -1.1, 0.7][i]);
+    let change = Mat::from_fn(3, 1, |i, _| [1e-9, 3e-9, -2e-9][i]);
+    let mut x = &start + &change;
+    let gap = square(&x) - square(&start);
+    let residual = group.correct_vector(&start, &mut x).expect("a form");
+    let along = (&mixed + mixed.transpose()) * &start * faer::Scale(0.5);
+    let nearest = gap.abs() / (2.0 * along.norm_l2());
+    assert!((square(&x) - square(&start)).abs() < 8.0 * EPS && gap.abs() > 1e-9);
+    assert!((residual - gap.abs() / (start.norm_l2() * along.norm_l2())).abs() < 1e-15);
+    let moved = (&x - &start - &change).norm_l2();
+    assert!((moved - nearest).abs() < 1e-6 * nearest, "{moved:e}, expected {nearest:e}");
+
+    // |Sx| is 1e-4 of ‖S‖|x|: the rounding of xᵀMx alone moves x by 1e4 ε.
+    let flat = MatrixGroup::gm(faer::mat![[1.0, 1e-4 - 1.0], [1e-4 - 1.0, 1.0]]).expect("a group");
+    let from = Mat::from_fn(2, 1, |_, _| 1.0);
+    let mut x = &from * faer::Scale(1.0 + 1e-9);
+    let before = x.clone();
+    assert!(flat.correct_vector(&from, &mut x).is_some_and(|residual| residual > 1e-9));
+    assert_eq!(x, before);
+    for (form, is_kept) in [(faer::mat![[0.0, 1.0], [-1.0, 0.0]], true), (mixed, false)] {
+        let group = MatrixGroup::gm(form).expect("a group");
+        let start = Mat::from_fn(group.n(), 1, |i, _| 1.0 + i as f64);
+        let off = &start * faer::Scale(1.0 + 1e-9);
+        let mut x = off.clone();
+        group.correct_vector(&start, &mut x);
+        assert_eq!(x == off, is_kept);
+    }
+    let mut none = Mat::from_fn(3, 1, |_, _| f64::NAN);
+    assert!(group.correct_vector(&start, &mut none).is_some_and(f64::is_nan));
 }
 
 /// Each part goes back to its own orbit, and the largest residual is what is reported.

@@ -50,6 +50,45 @@ pub(crate) fn correct_length<const N: usize>(
     missing.abs()
 }
 
+/// x ← x + ½Sx(q(from) − q(x))/|Sx|² with q(x) = xᵀMx = xᵀSx and S = (M + Mᵀ)/2: to first order the nearest point with the q
+/// of `from`. Returns |q(from) − q(x)|/(|x||Sx|). It is [`LieGroup::correct_vector`](crate::LieGroup::correct_vector) of one
+/// vector.
+///
+/// x stays as it is where the rounding of q moves it by more than a step does: where |Sx| is far below ‖S‖|x|.
+pub(super) fn correct_form(m: &Mat<f64>, from: ColRef<'_, f64>, mut x: ColMut<'_, f64>) -> f64 {
+    let n = m.nrows();
+    // (Sx)_i, and the same of moduli.
+    let row = |x: ColRef<'_, f64>, i: usize| {
+        let terms = (0..n).map(|j| 0.5 * (m[(i, j)] + m[(j, i)]) * x[j]);
+        terms.fold((0.0, 0.0), |(sum, size), term| (sum + term, size + term.abs()))
+    };
+    let form = |x: ColRef<'_, f64>| (0..n).map(|i| row(x, i).0 * x[i]).sum::<f64>();
+    let (mut square, mut length, mut size) = (0.0, 0.0, 0.0);
+    for i in 0..n {
+        let (along, most) = row(x.as_ref(), i);
+        square += along * along;
+        length += x[i] * x[i];
+        size += most * x[i].abs();
+    }
+    if length.is_nan() {
+        return f64::NAN;
+    }
+    if !(in_range(square) && in_range(length)) {
+        return 0.0;
+    }
+    let missing = form(from) - form(x.as_ref());
+    let unit = length.sqrt() * square.sqrt();
+    let residual = missing.abs() / unit;
+    if residual < RESIDUAL_MAX && f64::EPSILON * size <= LARGE * unit {
+        // Each row sees those before it moved: a change of second order.
+        for i in 0..n {
+            let along = row(x.as_ref(), i).0;
+            x[i] += 0.5 * missing / square * along;
+        }
+    }
+    residual
+}
+
 /// The kind of P.
 #[derive(Clone, Debug)]
 pub(super) enum Cosquare {

@@ -15,6 +15,7 @@ use faer::{Mat, MatRef};
 
 pub(crate) use check::finite;
 use correct::Cosquare;
+use correct::correct_form;
 pub(crate) use correct::correct_length;
 pub use element::{AlgebraMatrix, GroupMatrix};
 use parts::{Symmetry, inverse_of, symmetry, without_rounding};
@@ -361,10 +362,15 @@ impl LieGroup for MatrixGroup {
     fn check_vector(&self, x: &Mat<f64>) -> Result<(), Error> {
         self.rows_fit("y", x, x.ncols())
     }
-    /// On SO(n) each column keeps its length.
+    /// Each column keeps its length on SO(n), and xᵀMx on G_M.
     fn correct_vector(&self, from: &Mat<f64>, x: &mut Mat<f64>) -> Option<f64> {
-        let column = |j: usize| correct_length([from.col(j)], [x.as_mut().col_mut(j)]);
-        matches!(self.form, Form::Identity).then(|| (0..from.ncols()).map(column).fold(0.0, larger))
+        let column = |j: usize| match &self.form {
+            Form::Identity => Some(correct_length([from.col(j)], [x.as_mut().col_mut(j)])),
+            Form::Bilinear { m, .. } => Some(correct_form(m, from.col(j), x.as_mut().col_mut(j))),
+            // xᵀJx = 0 of any x.
+            Form::Free | Form::Symplectic => None,
+        };
+        (0..from.ncols()).map(column).try_fold(0.0, |worst, found| Some(larger(worst, found?)))
     }
     fn residual_size(&self, g: &GroupMatrix) -> f64 {
         self.residual_size_of(g)
