@@ -147,7 +147,7 @@ impl Samples {
         Error::all_finite("times", times)?;
         for (k, &t) in times.iter().enumerate() {
             if k > 0 && t <= times[k - 1] {
-                let expected = format!("more than times[{}] = {}", k - 1, times[k - 1]);
+                let expected = format!("more than {}, the time before it", times[k - 1]);
                 return Err(Error::out_of_range(format!("times[{k}]"), t, expected));
             }
         }

@@ -164,8 +164,8 @@ fn a_table_that_is_none_is_refused() {
     };
     refused(&[], &[], "times: length 0, expected at least 2");
     refused(&[1.0], &[&[1.0]], "times: length 1, expected at least 2");
-    refused(&[0.0, 2.0, 1.0], &[], "times[2] = 1, expected more than times[1] = 2");
-    refused(&[0.0, 2.0, 2.0], &[], "times[2] = 2, expected more than times[1] = 2");
+    refused(&[0.0, 2.0, 1.0], &[], "times[2] = 1, expected more than 2, the time before it");
+    refused(&[0.0, 2.0, 2.0], &[], "times[2] = 2, expected more than 2, the time before it");
     refused(&[0.0, f64::NAN], &[], "times[1] = NaN, expected a finite number");
     refused(&[-1e308, 1e308], &[], "times = inf, expected times that span a finite length");
     refused(&[0.0, 1.0], &[&[0.0, 1.0], &[0.0]], "columns[1]: length 1, expected 2 as there are");
