@@ -321,3 +321,27 @@ def test_low_level_callables():
     numbers = (ctypes.c_double * 1)(2.0)
     with pytest.raises(lf.ArgumentError, match="user_data.*parameters"):
         lf.CFunction(scipy.LowLevelCallable(turn, ctypes.cast(numbers, ctypes.c_void_p)))
+
+
+def test_formulas_of_y_are_not_linear():
+    space = {"frame": "body", "linear": True}
+    magnus = {**space, "method": "magnus4", "steps": 10}
+    samples = lf.Samples([0, 1], [[1.0, 0], [2.0, 1]], names=["s", "q"])
+    of_t = lf.Field("SO(3)", ["s", "c", "0"], let={"c": "q^2", "not_used": "y11"}, samples=samples)
+    assert np.array_equal(
+        lf.solve_ivp(of_t, (0, 1), np.eye(3), **magnus).y_end,
+        lf.solve_ivp(of_t, (0, 1), np.eye(3), **{**magnus, "linear": False}).y_end,
+    )
+    for of_y in (
+        lf.Field("SO(3)", ["y11", "0", "1"]),
+        lf.Field("SO(3)", ["c", "0", "1"], let={"c": "s*y11"}, samples=samples),
+    ):
+        runs = (
+            lambda: lf.solve_ivp(of_y, (0, 1), np.eye(3), **magnus),
+            lambda: lf.solve_ivp(of_y, (0, 1), np.eye(3), **space),
+            lambda: lf.Integrator(of_y, "magnus4", (0, 1), np.eye(3), dt=0.1, **space),
+        )
+        for run in runs:
+            with pytest.raises(lf.ArgumentError) as caught:
+                run()
+            assert str(caught.value) == "linear: True, expected False: the formulas of f depend on y"

@@ -192,6 +192,8 @@ class Ready:
                 expected = "a function; formulas have real values (lf.MatrixOde and lf.Schrodinger have complex ones)"
                 raise ArgumentError("fun", f"formulas for {self.group}", expected)
             formulas = fun.formulas(fun.field, self.shape, tuple(self.space.value))
+            if self.linear and formulas.depends_on_y:
+                raise ArgumentError("linear", "True", "False: the formulas of f depend on y")
             self.kinks = formulas.knots(span)
             self.linear = self.linear or self.space.has_linear_methods and not formulas.depends_on_y
             return formulas
