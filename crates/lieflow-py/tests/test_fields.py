@@ -345,3 +345,20 @@ def test_formulas_of_y_are_not_linear():
             with pytest.raises(lf.ArgumentError) as caught:
                 run()
             assert str(caught.value) == "linear: True, expected False: the formulas of f depend on y"
+
+
+def test_parts_have_a_field_of_t_alone():
+    parts = lf.Parts(R="rotation", x="vector", n="number")
+    start = {"R": np.eye(3), "x": [1.0, 0, 0], "n": 0.5}
+
+    def f(t, rate):
+        return {"R": [0, 0, rate * t], "x": [0, 0, rate], "n": np.cos(t)}
+
+    space = {"group": parts, "frame": "body", "args": (2.0,)}
+    right = lf.solve_ivp(lambda t, y, rate: f(t, rate), (0, 1), start, **space)
+    found = lf.solve_ivp(f, (0, 1), start, linear=True, **space)
+    run = lf.Integrator(f, None, (0, 1), start, linear=True, **space)
+    run.advance_to(1.0)
+    for y in (found.y_end, run.y):
+        assert all(np.abs(y[name] - right.y_end[name]).max() < 1e-13 for name in y)
+    assert found.estimate_error().y["n"] < 1e-10

@@ -221,7 +221,7 @@ class Ready:
         layout = self.layout
         if layout is None:
             return fun
-        if isinstance(layout, ComplexPoints) and self.linear:
+        if self.linear:
             return lambda t, *args: _joined(layout.join, "f", t, fun(t, *args), False)
 
         def of_numbers(t: float, y: Array, *args: Any) -> Array:
