@@ -251,3 +251,23 @@ def test_results_are_finite():
     ):
         with pytest.raises(lf.ArgumentError, match="result: a number that is not finite"):
             call()
+
+
+@pytest.mark.parametrize("name", ["so3", "se3", "SO(4)", "Sp(4)", "U(2)"])
+def test_leading_axes_that_do_not_broadcast_are_named(rng, name):
+    group = getattr(lf, name) if name in ("so3", "se3") else eval(f"lf.{name}")
+    g, n = group.random((2, 3), rng), 3 if name == "so3" else 6
+    u, v = (0.1 * rng.standard_normal((*lead, n)) for lead in ((2, 3), (2, 4)))
+    if hasattr(group, "name"):
+        u, v = (group.project(rng.standard_normal((*lead, group.n, group.n))) for lead in ((2, 3), (2, 4)))
+    calls = {
+        "Ad": ("u", lambda: group.Ad(g, v)), "ad": ("v", lambda: group.ad(u, v)), "coad": ("m", lambda: group.coad(u, v)),
+        "dexpinv": ("v", lambda: group.dexpinv(u, v, q=2)), "dexp": ("v", lambda: group.dexp(u, v)),
+    }
+    for argument, call in calls.values():
+        with pytest.raises(lf.ArgumentError, match=r"leading axes \(2, 4\), expected axes that broadcast with \(2, 3\)") as caught:
+            call()
+        assert caught.value.argument == argument
+    # Those that do are as before.
+    assert np.array_equal(group.ad(u, v[0, 0])[1, 2], group.ad(u[1, 2], v[0, 0]))
+    assert np.array_equal(group.coad(u[0, 0], v)[1, 3], group.coad(u[0, 0], v[1, 3]))

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from ._errors import ArgumentError
 
 __all__ = [
-    "MEMBERSHIP", "elements", "finite", "first", "into", "kept", "leading", "name_of", "number", "own", "real", "series", "together",
+    "MEMBERSHIP", "common", "elements", "finite", "first", "into", "kept", "leading", "name_of", "number", "own", "pair", "real", "series", "together",
     "value", "what", "whole", "wrong_out",
 ]
 
@@ -235,15 +235,30 @@ def baker(k: int) -> float:
     return (2.0 if k % 4 == 2 else -2.0) * (2.0 * math.pi) ** -k
 
 
-def together(name_a: str, a: Array, tail_a: int, name_b: str, b: Array, tail_b: int) -> tuple[Array, Array]:
-    """Broadcast the leading axes of two arrays."""
+def common(
+    name_a: str, a: NDArray[Any], tail_a: int, name_b: str, b: NDArray[Any], tail_b: int
+) -> tuple[int, ...]:
+    """Return the leading axes of two arrays together. Raise ArgumentError if they do not broadcast."""
     lead_a, lead_b = a.shape[: a.ndim - tail_a], b.shape[: b.ndim - tail_b]
     try:
-        lead = np.broadcast_shapes(lead_a, lead_b)
+        return np.broadcast_shapes(lead_a, lead_b)
     except ValueError:
         raise ArgumentError(
             name_b, f"leading axes {lead_b}", f"axes that broadcast with {lead_a} of {name_a}"
         ) from None
+
+
+def pair(
+    name_a: str, a: NDArray[Any], tail_a: int, name_b: str, b: NDArray[Any], tail_b: int
+) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Return two arrays, whose leading axes broadcast."""
+    common(name_a, a, tail_a, name_b, b, tail_b)
+    return a, b
+
+
+def together(name_a: str, a: Array, tail_a: int, name_b: str, b: Array, tail_b: int) -> tuple[Array, Array]:
+    """Broadcast the leading axes of two arrays."""
+    lead = common(name_a, a, tail_a, name_b, b, tail_b)
     wide_a = np.broadcast_to(a, lead + a.shape[a.ndim - tail_a :])
     wide_b = np.broadcast_to(b, lead + b.shape[b.ndim - tail_b :])
     return np.ascontiguousarray(wide_a), np.ascontiguousarray(wide_b)

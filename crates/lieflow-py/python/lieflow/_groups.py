@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _lieflow
-from ._arrays import MEMBERSHIP, Array, elements, first, into, leading, own, real, what, whole
+from ._arrays import MEMBERSHIP, Array, elements, first, into, leading, own, pair, real, what, whole
 from ._errors import ArgumentError
 
 __all__ = ["GL", "Gm", "Group", "SL", "SO", "Sp", "expm"]
@@ -111,13 +111,13 @@ class Group:
 
     def Ad(self, g: ArrayLike, u: ArrayLike, out: Array | None = None) -> Array:
         """Return Ad_g u = g u g⁻¹, shape (..., n, n)."""
-        a, b = self._element("g", g), self._algebra("u", u)
+        a, b = pair("g", self._element("g", g), 2, "u", self._algebra("u", u), 2)
         found = np.linalg.solve(np.swapaxes(a, -1, -2), np.swapaxes(a @ b, -1, -2))
         return into(np.ascontiguousarray(found.swapaxes(-1, -2)), out)
 
     def ad(self, u: ArrayLike, v: ArrayLike, out: Array | None = None) -> Array:
         """Return ad_u v = uv − vu, shape (..., n, n)."""
-        a, b = self._algebra("u", u), self._algebra("v", v)
+        a, b = pair("u", self._algebra("u", u), 2, "v", self._algebra("v", v), 2)
         return into(self.project(into(a @ b - b @ a, None)), out)  # without the rounding off 𝔤
 
     def coad(self, u: ArrayLike, m: ArrayLike, out: Array | None = None) -> Array:
@@ -125,7 +125,8 @@ class Group:
 
         A run with ``action="coadjoint"`` solves ẏ = −ad*_f y; a body has f = −ω.
         """
-        a, b = self._algebra("u", u).swapaxes(-1, -2), elements("m", m, (self.n, self.n))
+        a, b = pair("u", self._algebra("u", u), 2, "m", elements("m", m, (self.n, self.n)), 2)
+        a = a.swapaxes(-1, -2)
         return into(a @ b - b @ a, out)
 
     def contains(self, g: ArrayLike, tol: float = 1e-12) -> NDArray[np.bool_]:

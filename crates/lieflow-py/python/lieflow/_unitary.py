@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._arrays import finite, first, into, leading, real, series, what, whole
+from ._arrays import finite, first, into, leading, pair, real, series, what, whole
 from ._errors import ArgumentError
 from ._groups import SO, expm, size_of
 
@@ -213,7 +213,7 @@ class Unitary:
         return self._complex(self._real.cay_inv(_on_both_sides(self._element("g", g))), out)
 
     def _two(self, f: Any, u: ArrayLike, v: ArrayLike, out: Complex | None) -> Complex:
-        a, b = self._algebra("u", u), self._algebra("v", v)
+        a, b = pair("u", self._algebra("u", u), 2, "v", self._algebra("v", v), 2)
         return self._complex(f(_on_both_sides(a), _on_both_sides(b)), out)
 
     def dexp(self, u: ArrayLike, v: ArrayLike, out: Complex | None = None) -> Complex:
@@ -223,7 +223,7 @@ class Unitary:
     def dexpinv(self, u: ArrayLike, v: ArrayLike, out: Complex | None = None, *, q: int | None = None) -> Complex:
         """Return the inverse of dexp_u, applied to v. With q, its series Σ_k B_k/k! ad_u^k v is cut after k = q."""
         if q is not None:
-            a, b = self._algebra("u", u), self._algebra("v", v)
+            a, b = pair("u", self._algebra("u", u), 2, "v", self._algebra("v", v), 2)
             return into(series(lambda x, y: x @ y - y @ x, a, b, whole("q", q)), out)
         return self._two(self._real.dexpinv, u, v, out)
 
@@ -242,12 +242,12 @@ class Unitary:
 
     def Ad(self, g: ArrayLike, u: ArrayLike, out: Complex | None = None) -> Complex:
         """Return Ad_g u = g u g†."""
-        a, b = self._element("g", g), self._algebra("u", u)
+        a, b = pair("g", self._element("g", g), 2, "u", self._algebra("u", u), 2)
         return into(a @ b @ _adjoint(a), out)
 
     def ad(self, u: ArrayLike, v: ArrayLike, out: Complex | None = None) -> Complex:
         """Return ad_u v = uv − vu."""
-        a, b = self._algebra("u", u), self._algebra("v", v)
+        a, b = pair("u", self._algebra("u", u), 2, "v", self._algebra("v", v), 2)
         return self.project(into(a @ b - b @ a, None), out)  # without the rounding off u(n)
 
     def coad(self, u: ArrayLike, m: ArrayLike, out: Complex | None = None) -> Complex:
@@ -255,7 +255,8 @@ class Unitary:
 
         A run with ``action="coadjoint"`` solves ẏ = −ad*_f y.
         """
-        a, b = _adjoint(self._algebra("u", u)), self._matrices("m", m)
+        a, b = pair("u", self._algebra("u", u), 2, "m", self._matrices("m", m), 2)
+        a = _adjoint(a)
         return into(a @ b - b @ a, out)
 
     def contains(self, g: ArrayLike, tol: float = 1e-12) -> NDArray[np.bool_]:

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import so3
-from ._arrays import MEMBERSHIP, Array, elements, first, into, leading, series, whole
+from ._arrays import MEMBERSHIP, Array, elements, first, into, leading, pair, series, whole
 from ._errors import ArgumentError
 from ._lieflow import (
     se3_cay as cay,
@@ -45,6 +45,11 @@ def _motions(name: str, g: ArrayLike) -> Array:
     return a
 
 
+def _both(name_a: str, a: ArrayLike, name_b: str, b: ArrayLike) -> tuple[Array, Array]:
+    """Two arrays of vectors, whose leading axes broadcast."""
+    return pair(name_a, elements(name_a, a, (6,)), 1, name_b, elements(name_b, b, (6,)), 1)
+
+
 def dexpinv(u: ArrayLike, v: ArrayLike, out: Array | None = None, *, q: int | None = None) -> Array:
     """Return dexp_u⁻¹(v), the inverse of dexp_u, shape (..., 6); right-trivialised.
 
@@ -53,7 +58,7 @@ def dexpinv(u: ArrayLike, v: ArrayLike, out: Array | None = None, *, q: int | No
     """
     if q is None:
         return _dexpinv(u, v, out)
-    return into(series(ad, elements("u", u, (6,)), elements("v", v, (6,)), whole("q", q)), out)
+    return into(series(ad, *_both("u", u, "v", v), whole("q", q)), out)
 
 
 def ccsk(u: ArrayLike, out: Array | None = None, *, order: str = "123") -> Array:
@@ -82,7 +87,7 @@ def vee(m: ArrayLike, out: Array | None = None) -> Array:
 
 def Ad(g: ArrayLike, u: ArrayLike, out: Array | None = None) -> Array:
     """Return Ad_g (ω, v) = (Rω, Rv + x × Rω) of g = [R x; 0 1], shape (..., 6)."""
-    a, b = _motions("g", g), elements("u", u, (6,))
+    a, b = pair("g", _motions("g", g), 2, "u", elements("u", u, (6,)), 1)
     omega = (a[..., :3, :3] @ b[..., :3, None])[..., 0]
     v = (a[..., :3, :3] @ b[..., 3:, None])[..., 0] + np.cross(a[..., :3, 3], omega)
     return into(np.concatenate(np.broadcast_arrays(omega, v), axis=-1), out)
@@ -90,7 +95,7 @@ def Ad(g: ArrayLike, u: ArrayLike, out: Array | None = None) -> Array:
 
 def ad(u: ArrayLike, v: ArrayLike, out: Array | None = None) -> Array:
     """Return ad_(ω, v) (ω′, v′) = (ω × ω′, ω × v′ + v × ω′), shape (..., 6)."""
-    a, b = elements("u", u, (6,)), elements("v", v, (6,))
+    a, b = _both("u", u, "v", v)
     rotation = np.cross(a[..., :3], b[..., :3])
     translation = np.cross(a[..., :3], b[..., 3:]) + np.cross(a[..., 3:], b[..., :3])
     return into(np.concatenate([rotation, translation], axis=-1), out)
@@ -101,7 +106,7 @@ def coad(u: ArrayLike, m: ArrayLike, out: Array | None = None) -> Array:
 
     A run with ``action="coadjoint"`` solves ẏ = −ad*_f y; a body in a fluid has f = −(ω, v).
     """
-    a, b = elements("u", u, (6,)), elements("m", m, (6,))
+    a, b = _both("u", u, "m", m)
     mu = np.cross(b[..., :3], a[..., :3]) + np.cross(b[..., 3:], a[..., 3:])
     return into(np.concatenate([mu, np.cross(b[..., 3:], a[..., :3])], axis=-1), out)
 

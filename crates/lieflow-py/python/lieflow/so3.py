@@ -26,7 +26,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._arrays import MEMBERSHIP, Array, elements, first, into, leading, series, together, whole
+from ._arrays import MEMBERSHIP, Array, elements, first, into, leading, pair, series, together, whole
 from ._errors import ArgumentError
 from ._lieflow import (
     so3_cay as cay,
@@ -84,7 +84,7 @@ def dexpinv(u: ArrayLike, v: ArrayLike, out: Array | None = None, *, q: int | No
     """
     if q is None:
         return _dexpinv(u, v, out)
-    return into(series(np.cross, elements("u", u, (3,)), elements("v", v, (3,)), whole("q", q)), out)
+    return into(series(np.cross, *_both(u, v), whole("q", q)), out)
 
 
 def ccsk(u: ArrayLike, out: Array | None = None, *, order: str = "123") -> Array:
@@ -101,9 +101,9 @@ def _axes(order: str) -> list[int]:
     return [int(axis) - 1 for axis in order]
 
 
-def _both(u: ArrayLike, v: ArrayLike) -> tuple[Array, Array]:
+def _both(u: ArrayLike, v: ArrayLike, name: str = "v") -> tuple[Array, Array]:
     """Two arrays of vectors with the same leading axes."""
-    return together("u", elements("u", u, (3,)), 1, "v", elements("v", v, (3,)), 1)
+    return together("u", elements("u", u, (3,)), 1, name, elements(name, v, (3,)), 1)
 
 
 def dccskinv(u: ArrayLike, v: ArrayLike, out: Array | None = None, *, order: str = "123") -> Array:
@@ -200,12 +200,13 @@ def vee(m: ArrayLike, out: Array | None = None) -> Array:
 
 def Ad(r: ArrayLike, u: ArrayLike, out: Array | None = None) -> Array:
     """Return Ad_R u = R u, shape (..., 3)."""
-    return into((_rotations("r", r) @ elements("u", u, (3,))[..., None])[..., 0], out)
+    a, b = pair("r", _rotations("r", r), 2, "u", elements("u", u, (3,)), 1)
+    return into((a @ b[..., None])[..., 0], out)
 
 
 def ad(u: ArrayLike, v: ArrayLike, out: Array | None = None) -> Array:
     """Return ad_u v = u × v, shape (..., 3)."""
-    return into(np.cross(elements("u", u, (3,)), elements("v", v, (3,))), out)
+    return into(np.cross(*_both(u, v)), out)
 
 
 def coad(u: ArrayLike, m: ArrayLike, out: Array | None = None) -> Array:
@@ -213,7 +214,8 @@ def coad(u: ArrayLike, m: ArrayLike, out: Array | None = None) -> Array:
 
     A run with ``action="coadjoint"`` solves ẏ = −ad*_f y = f × y, so that a body has f = −ω.
     """
-    return into(np.cross(elements("m", m, (3,)), elements("u", u, (3,))), out)
+    a, b = _both(u, m, "m")
+    return into(np.cross(b, a), out)
 
 
 def contains(r: ArrayLike, tol: float = 1e-12) -> NDArray[np.bool_]:
