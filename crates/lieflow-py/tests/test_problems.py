@@ -528,6 +528,11 @@ def test_equal_problems_are_one():
     one, other = lf.RigidBody(inertia=[1, 2, 3], omega_body=[0.3, 1, 0]), lf.RigidBody(inertia=np.array([1.0, 2, 3]), omega_body=[np.float64(0.3), 1, 0])
     assert one == other and len({one, other}) == 1
     assert eval(repr(other), {"lieflow": lf}) == other and "np" not in repr(other)
+    below = one.replace(omega_body=[0.3, 1, -0.0])
+    assert below == one and len({one, below}) == 1
+    keys = {"quantities": "attitude", "method": "rkmk dop853 exp"}
+    end = lf.solve_ivp(one, (0, 1), **keys).y_end
+    assert lf.solve_ivp(below, (1, 2), end, **keys).success
 
 
 def test_an_integrator_refuses_what_a_run_refuses():

@@ -29,9 +29,9 @@ def part(x: Any, name: str) -> Any:
 
 
 def alike(x: Any) -> str:
-    """Return a text that is the same for equal values: 1 and 1.0 are equal."""
-    if isinstance(x, int) and not isinstance(x, bool):
-        return repr(float(x))
+    """Return a text that is the same for equal values: 1 and 1.0 are equal, 0.0 and -0.0 too."""
+    if isinstance(x, (int, float)) and not isinstance(x, bool):
+        return repr(float(x) + 0.0)  # −0.0 + 0.0 is 0.0
     if isinstance(x, dict):
         return f"{{{', '.join(f'{key}: {alike(x[key])}' for key in sorted(x))}}}"
     return f"[{', '.join(map(alike, x))}]" if isinstance(x, list) else repr(x)
