@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+import re
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
@@ -172,3 +173,10 @@ def test_elements_to_six_digits_have_maps(rng):
         with pytest.raises(lf.ArgumentError):
             group.log(exact + 1e-3)
         assert not group.contains(exact + 1e-3)
+
+
+@pytest.mark.parametrize("group", [lf.SO(3), lf.Sp(4), lf.U(2)])
+def test_matrices_whose_squares_overflow_are_in_no_group(group):
+    for size in (1e80, 1e155, 1e200):
+        with pytest.raises(lf.ArgumentError, match="^g: a matrix at a relative distance of .* from " + re.escape(group.name)):
+            group.Ad(size * np.eye(group.n), np.zeros((group.n, group.n)))

@@ -363,3 +363,22 @@ def test_which_maps_leave_the_determinant(group, leaves):
         r = lf.solve_ivp(lambda t, y: value * (1 + t), (0, 1), np.eye(n), group=group, frame="space", method=f"rkmk4 {name}", steps=4)
         off = abs(np.linalg.det(r.y_end) - 1)
         assert off > 1e-10 if leaves and name != "exp" else off < 1e-14
+
+
+def test_matrices_in_single_precision_are_taken(pair):
+    group, u = lf.U(N), pair[0]
+    g = group.exp(u).astype(np.complex64)
+    assert group.defect(g).max() > 1e-10
+    for single, right in ((group.log(g), u), (group.cay(group.cay_inv(g)), g), (group.Ad(g, u), u)):
+        assert np.abs(single - right).max() < 1e-5
+    skew = u + 1e-8 * np.ones((N, N))
+    assert np.abs(group.exp(skew) - group.exp(u)).max() < 1e-7
+    # The distance is relative, as in Group: ‖g†g − 1‖ = 0.21 √3 by ‖g‖² = 3.63.
+    for call, words in (
+        (lambda: group.log(1.1 * group.exp(u)[0]), "g: a matrix at a relative distance of 1.0e-01 from U(3), expected a unitary matrix to 1e-06"),
+        (lambda: group.exp(u + 1e-3 * np.eye(N)), "u[0]: a matrix at a relative distance of "),
+        (lambda: lf.SO(3).Ad(1.1 * np.eye(3), np.zeros((3, 3))), "g: a matrix at a relative distance of 1.0e-01 from SO(3), "),
+    ):
+        with pytest.raises(lf.ArgumentError) as caught:
+            call()
+        assert str(caught.value).startswith(words), str(caught.value)

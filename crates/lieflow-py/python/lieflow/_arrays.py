@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from ._errors import ArgumentError
 
 __all__ = [
-    "MEMBERSHIP", "common", "elements", "finite", "first", "into", "kept", "leading", "name_of", "number", "own", "pair", "real", "series", "together",
+    "MEMBERSHIP", "common", "elements", "finite", "first", "into", "kept", "leading", "name_of", "near", "number", "own", "pair", "real", "series", "size_of_elements", "together",
     "value", "what", "whole", "wrong_out",
 ]
 
@@ -139,6 +139,25 @@ def first(name: str, wrong: NDArray[np.bool_], value: str, expected: str) -> Non
     if wrong.any():
         place = [str(int(i)) for i in np.argwhere(wrong)[0]]
         raise ArgumentError(f"{name}[{', '.join(place)}]" if place else name, value, expected)
+
+
+def size_of_elements(g: NDArray[Any]) -> Array:
+    """Return max(1, ‖g‖²) of each matrix (Frobenius): distances from a group are relative to it."""
+    with np.errstate(over="ignore"):
+        return np.asarray(np.maximum(1.0, np.linalg.norm(g, axis=(-1, -2)) ** 2))
+
+
+def near(name: str, off: Array, size: Array, words: tuple[str, str]) -> None:
+    """Raise ArgumentError for the first element that is off by more than MEMBERSHIP times its size.
+
+    ``words`` are what it is far from, and what was expected.
+    """
+    wrong = np.asarray(~((off <= MEMBERSHIP * size) & (off < np.inf)))
+    if wrong.any():
+        far, of = (float(np.asarray(x)[wrong][0]) for x in (off, size))
+        distance = far / of if far < math.inf else math.inf
+        value = f"a matrix at a relative distance of {distance:.1e} from {words[0]}"
+        first(name, wrong, value, f"{words[1]} to {MEMBERSHIP:g}")
 
 
 def finite(name: str, x: NDArray[Any], tail: int = 0) -> None:

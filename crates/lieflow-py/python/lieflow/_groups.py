@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _lieflow
-from ._arrays import MEMBERSHIP, Array, elements, first, into, leading, own, pair, real, what, whole
+from ._arrays import Array, elements, into, leading, near, own, pair, real, size_of_elements, what, whole
 from ._errors import ArgumentError
 
 __all__ = ["GL", "Gm", "Group", "SL", "SO", "Sp", "expm"]
@@ -84,14 +84,13 @@ class Group:
         u = elements(name, x, (self.n, self.n))
         off = np.abs(u - self.project(u)).max((-1, -2), initial=0.0)
         size = np.abs(u).max((-1, -2), initial=0.0)
-        first(name, off > MEMBERSHIP * size, "a matrix that is not in the algebra", f"an element of the algebra of {self.name}")
+        near(name, off, size, (f"the algebra of {self.name}", "an element of it"))
         return u
 
     def _element(self, name: str, x: ArrayLike) -> Array:
         """Elements of the group."""
         g = elements(name, x, (self.n, self.n))
-        size = np.maximum(1.0, np.linalg.norm(g, axis=(-1, -2)) ** 2)
-        first(name, ~(self._group.defect(g) <= MEMBERSHIP * size), "a matrix that is not in the group", f"an element of {self.name}")
+        near(name, self._group.defect(g), size_of_elements(g), (self.name, "an element of it"))
         return g
 
     def dexpinv(self, u: ArrayLike, v: ArrayLike, out: Array | None = None, *, q: int | None = None) -> Array:

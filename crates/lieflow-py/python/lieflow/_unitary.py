@@ -8,16 +8,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._arrays import finite, first, into, leading, pair, real, series, what, whole
+from ._arrays import finite, first, into, leading, near, pair, real, series, size_of_elements, what, whole
 from ._errors import ArgumentError
 from ._groups import SO, expm, size_of
 
 __all__ = ["U", "ComplexPoints", "Unitary", "is_unitary_name"]
 
 Complex = NDArray[np.complex128]
-
-#: Matrices of an algebra or of a group may be so far from it, relative to their size.
-MISS = 1e-10
 
 
 def _plain(name: str) -> str:
@@ -122,7 +119,7 @@ class Unitary:
 
     :func:`lieflow.U` makes it. The maps are those of :class:`lieflow.Group`: ``exp``, ``log``, ``cay``, ``cay_inv``,
     ``dexp``, ``dexpinv``, ``dcay``, ``dcayinv``, ``Ad``, ``ad``, ``coad``, ``project``, ``contains``, ``random``. Elements
-    of u(n) are skew-Hermitian, and arguments are checked to be in u(n) or in U(n). Physics writes exp(−iH) with a
+    of u(n) are skew-Hermitian. Arguments must be in u(n) or in U(n) to 1e-6 of their size. Physics writes exp(−iH) with a
     Hermitian H: here u = −iH. ``out=`` is an array of complex128 in C order. Differentials are right-trivialised.
     Errors: :class:`lieflow.ArgumentError` with the place of the matrix, TypeError.
     Source: A. Iserles, H. Munthe-Kaas, S. P. Nørsett, A. Zanna, Lie-group methods, Acta Numerica 9 (2000).
@@ -171,13 +168,13 @@ class Unitary:
     def _algebra(self, name: str, x: ArrayLike) -> Complex:
         u = self._matrices(name, x)
         size = np.abs(u).max(axis=(-1, -2), initial=0.0)
-        off = np.abs(u + _adjoint(u)).max(axis=(-1, -2), initial=0.0)
-        first(name, off > MISS * size, "a matrix with u + u† ≠ 0", "a skew-Hermitian matrix, −iH of a Hermitian H")
+        off = np.abs(u + _adjoint(u)).max(axis=(-1, -2), initial=0.0) / 2
+        near(name, off, size, (f"the algebra of {self.name}", "a skew-Hermitian matrix, −iH of a Hermitian H"))
         return u
 
     def _element(self, name: str, x: ArrayLike) -> Complex:
         g = self._matrices(name, x)
-        first(name, ~(self.defect(g) <= MISS), "a matrix with g†g ≠ 1", "a unitary matrix")
+        near(name, self.defect(g), size_of_elements(g), (self.name, "a unitary matrix"))
         return g
 
     def defect(self, g: ArrayLike) -> NDArray[np.float64]:
