@@ -89,3 +89,39 @@ def test_a_copy_of_an_integrator_has_the_arguments_of_its_start():
         other.advance_to(10.0)
         assert other.nsteps == run.nsteps and np.array_equal(other.state, run.state) and type(other.y) is type(run.y)
     assert list(pickle.loads(pickle.dumps(runs[1])).y) == ["momentum_body"]
+
+
+def test_fields_samples_and_parts_do_not_change():
+    samples = lf.Samples([0.0, 1.0], [[1.0], [2.0]])
+    parts = lf.Parts(R="rotation", n="numbers 2")
+    field = lf.Field("SO(3)", ["a*s", "b2", "c"], let={"c": ["0"]}, samples=samples, a=1.0, b=np.array([0.0, 3.0]))
+    rows = lf.Field("SO(2)", [["0", "w1"], ["-w1", "0"]], w=[1.0])
+    of_parts = lf.Field(parts, {"R": ["0", "0", "1"], "n": ["1", "0"]})
+    for thing, names in ((samples, ("t", "values", "interpolation", "names")), (parts, ("spaces",)),
+                         (field, ("group", "field", "y", "let", "samples", "parameters"))):
+        for name in names:
+            words = f"^{name}: {type(thing).__name__} does not change; make another one$"
+            with pytest.raises(AttributeError, match=words):
+                setattr(thing, name, getattr(thing, name))
+            with pytest.raises(AttributeError, match=words):
+                delattr(thing, name)
+    for change in (
+        lambda: field.parameters.update(a=2.0), lambda: field.parameters.__setitem__("a", 2.0), lambda: field.let.pop("c"),
+        lambda: field.let["c"].__setitem__(0, "1"), lambda: field.parameters["b"].__setitem__(1, 0.0), lambda: field.field.append("1"),
+        lambda: rows.field[0].__setitem__(0, "1"), lambda: rows.parameters["w"].__setitem__(0, 2.0),
+        lambda: of_parts.field.__setitem__("n", ["0", "0"]), lambda: of_parts.field["n"].clear(), lambda: parts.spaces.clear(),
+        lambda: samples.values.__setitem__(0, 5.0), lambda: samples.t.__setitem__(0, 5.0),
+    ):
+        with pytest.raises((TypeError, ValueError, AttributeError)):
+            change()
+    with pytest.raises(TypeError, match="^parameters: Field does not change; make another one$"):
+        field.parameters["a"] = 2.0
+    starts = ((field, np.eye(3)), (rows, np.eye(2)), (of_parts, {"R": np.eye(3), "n": [0, 0]}))
+    for of, start in starts:
+        end = lf.solve_ivp(of, (0, 1), start, frame="body").y_end
+        for other in (copy.copy(of), copy.deepcopy(of), pickle.loads(pickle.dumps(of)), eval(repr(of), {"lieflow": lf, "array": np.array})):
+            assert repr(other) == repr(of)
+            np.testing.assert_equal(lf.solve_ivp(other, (0, 1), start, frame="body").y_end, end)
+            with pytest.raises(AttributeError, match="does not change"):
+                other.field = ["0", "0", "0"]
+    assert copy.deepcopy(parts) == parts and np.array_equal(copy.deepcopy(samples)([0.5]), samples([0.5]))

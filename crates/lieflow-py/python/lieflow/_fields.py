@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 import sys
 from collections.abc import Mapping, Sequence
 from functools import partial
@@ -15,6 +14,7 @@ from . import _lieflow
 from ._arrays import Array, finite, kept, name_of, own, real
 from ._errors import ArgumentError, together
 from ._groups import Group
+from ._unchanging import Constants, Unchanging, unchanging
 
 __all__ = ["CFunction", "Field", "Parts", "Quantities", "Samples"]
 
@@ -47,25 +47,21 @@ def numbered(name: str, shape: tuple[int, ...]) -> list[str]:
     return [name + between.join(str(i + 1) for i in place) for place in np.ndindex(*shape)]
 
 
-class State(Quantities):
+class State(Constants, Quantities):
     """The quantities at the end of a run of a problem. Another run goes on from them: ``y0=result.y_end``.
 
     They cannot be changed: the numbers of the point stand behind them.
     """
 
     def __init__(self, quantities: dict[str, NDArray[Any]], numbers: NDArray[np.float64], of: tuple[str, str, str]) -> None:
-        super().__init__(quantities)
+        super().__init__(
+            quantities,
+            "y_end: it cannot be changed; give y0 the numbers of a state, as lieflow.Integrator.state has them, or make a "
+            "problem with another start by replace()",
+        )
         for array in self.values():
             array.setflags(write=False)
         self._numbers, self._of = numbers, of
-
-    def _refuse(self, *_: Any, **__: Any) -> Any:
-        raise TypeError(
-            "y_end: it cannot be changed; give y0 the numbers of a state, as lieflow.Integrator.state has them, or make a "
-            "problem with another start by replace()"
-        )
-
-    __setitem__ = __delitem__ = __ior__ = update = pop = popitem = clear = setdefault = _refuse
 
     def __reduce__(self) -> tuple[Any, ...]:
         return (State, (dict(self), self._numbers, self._of))
@@ -129,12 +125,12 @@ def address(function: Any) -> int:
     return int(found)
 
 
-class Samples:
+class Samples(Unchanging):
     """Sampled values as a function of time.
 
     As f of :func:`lieflow.solve_ivp` it is a function of t alone; a step ends at each time where it is not smooth. Of
     :class:`lieflow.Parts` its columns are the values of the parts, in the order of the parts. As the
-    key ``samples`` of a problem its columns are variables of the formulas.
+    key ``samples`` of a problem its columns are variables of the formulas. Samples do not change: others are made anew.
 
     Parameters
     ----------
@@ -151,28 +147,33 @@ class Samples:
 
     __slots__ = ("_sampled", "interpolation", "names", "t", "values")
 
+    t: Array
+    values: Array
+    interpolation: str
+    names: tuple[str, ...]
+
     def __init__(
         self, t: ArrayLike, values: ArrayLike, interpolation: str = "linear", names: Sequence[str] | None = None
     ) -> None:
-        self.t, self.values = own("t", t), own("values", values)
-        if self.t.ndim != 1:
-            raise ArgumentError("t", f"shape {self.t.shape}", "shape (k,)")
-        if self.values.ndim == 1:
-            self.values = self.values[:, None]
-        if self.values.ndim != 2 or len(self.values) != len(self.t):
-            raise ArgumentError("values", f"shape {self.values.shape}", f"shape ({len(self.t)}, n)")
-        self.interpolation = name_of("interpolation", interpolation)
-        n = self.values.shape[1]
-        self.names = tuple(names) if names is not None else ("s",) if n == 1 else tuple(f"s{j + 1}" for j in range(n))
-        for j, name in enumerate(self.names):
+        times, rows = own("t", t), own("values", values)
+        if times.ndim != 1:
+            raise ArgumentError("t", f"shape {times.shape}", "shape (k,)")
+        if rows.ndim == 1:
+            rows = rows[:, None]
+        if rows.ndim != 2 or len(rows) != len(times):
+            raise ArgumentError("values", f"shape {rows.shape}", f"shape ({len(times)}, n)")
+        n = rows.shape[1]
+        of = tuple(names) if names is not None else ("s",) if n == 1 else tuple(f"s{j + 1}" for j in range(n))
+        for j, name in enumerate(of):
             name_of(f"names[{j}]", name)
-        if len(self.names) != n:
-            raise ArgumentError("names", f"{len(self.names)} names", f"{n}, one for each column")
-        if len(set(self.names)) < n:
-            twice = next(name for name in self.names if self.names.count(name) > 1)
+        if len(of) != n:
+            raise ArgumentError("names", f"{len(of)} names", f"{n}, one for each column")
+        if len(set(of)) < n:
+            twice = next(name for name in of if of.count(name) > 1)
             raise ArgumentError("names", f"{twice!r} twice", "another name for each column")
-        columns = [np.ascontiguousarray(column) for column in self.values.T]
-        self._sampled = _lieflow.SampledField(self.t, columns, interpolation)
+        self._set(t=times, values=rows, interpolation=name_of("interpolation", interpolation), names=of)
+        columns = [np.ascontiguousarray(column) for column in rows.T]
+        self._sampled = _lieflow.SampledField(times, columns, interpolation)
 
     def __call__(self, t: ArrayLike) -> Array:
         """Return the values at t, the shape of t followed by (n,). A time outside of the samples is refused."""
@@ -200,7 +201,7 @@ TAKEN = frozenset(
 )
 
 
-class Parts:
+class Parts(Unchanging):
     """A system of rotations, vectors and numbers, as the ``group`` of a run. Then y is a dict of arrays.
 
     ``lf.Parts(R="rotation", x="vector", m="numbers 3")``:
@@ -217,10 +218,12 @@ class Parts:
 
     __slots__ = ("_places", "spaces")
 
+    spaces: dict[str, str]
+
     def __init__(self, **spaces: str) -> None:
         if not spaces:
             raise ArgumentError("spaces", "none", 'at least one part, such as R="rotation"')
-        self.spaces = spaces
+        self._set(spaces=unchanging(spaces, self._refusal("spaces")))
         sizes: dict[str, tuple[int, int, tuple[int, ...]]] = {}
         for name, space in spaces.items():
             if name in TAKEN or name.startswith("_"):
@@ -316,8 +319,8 @@ def _parts(spaces: dict[str, str]) -> Parts:
     return Parts(**spaces)
 
 
-class Field:
-    """A field as formulas. A run calls it without the interpreter.
+class Field(Unchanging):
+    """A field as formulas. A run calls it without the interpreter. It does not change.
 
     Parameters
     ----------
@@ -346,6 +349,13 @@ class Field:
 
     __slots__ = ("_made", "field", "group", "let", "parameters", "samples", "y")
 
+    group: str | Group | Parts
+    field: Any
+    y: str
+    let: dict[str, Any]
+    samples: Samples | None
+    parameters: dict[str, Any]
+
     def __init__(
         self,
         group: str | Group | Parts,
@@ -365,8 +375,9 @@ class Field:
         for name, x in parameters.items():
             real(name, x)
         # Copies: a later change of an argument has no effect.
-        self.group, self.field, self.y, self.samples = group, copy.deepcopy(field), y, samples
-        self.let, self.parameters = copy.deepcopy(dict(let or {})), copy.deepcopy(parameters)
+        values = {"field": field, "let": dict(let or {}), "parameters": parameters}
+        self._set(group=group, y=y, samples=samples)
+        self._set(**{name: unchanging(x, self._refusal(name)) for name, x in values.items()})
         self._made: dict[Any, _lieflow.Formulas] = {}
 
     def formulas(
@@ -397,7 +408,7 @@ class Field:
                 flat = [text for row in texts for text in row]
             entries, counts, names = [flat], [int(np.prod(value, dtype=int))], None
             row = value[1] if flat is not texts else 0
-        keys: dict[str, Any] = {"field": [list(e) if isinstance(e, tuple) else e for e in entries]}
+        keys: dict[str, Any] = {"field": entries}
         constants: dict[str, float] = {}
         for name, x in self.parameters.items():
             array = real(name, x)
@@ -407,7 +418,7 @@ class Field:
                 constants[constant] = float(number)
         keys["parameters"] = constants
         if self.let:
-            keys["let"] = {name: list(x) if isinstance(x, tuple) else x for name, x in self.let.items()}
+            keys["let"] = self.let
         if self.samples is not None:
             keys["samples"] = list(self.samples.as_file())
             keys["interpolation"] = self.samples.interpolation

@@ -17,6 +17,7 @@ from ._arrays import Array, finite, kept, name_of, number, own, real, what
 from ._errors import ArgumentError
 from ._fields import Quantities, Samples, State
 from ._result import Layout
+from ._unchanging import Unchanging
 from ._unitary import ComplexState, complex_numbers
 from ._values import alike, is_complex, part, plain
 
@@ -27,7 +28,7 @@ Numbers = ArrayLike | Sequence[Any]
 COLUMNS = 64
 
 
-class Problem:
+class Problem(Unchanging):
     """A problem of one kind, such as :class:`lieflow.RigidBody`: its equation, its parameters and its start.
 
     The keys are those of scene files. Values are numbers, lists, arrays, texts, dicts (``let``, ``parameters``), SciPy's
@@ -48,11 +49,8 @@ class Problem:
         self._make(keys)
         self._warn(3)
 
-    def __setattr__(self, name: str, value: Any) -> None:
-        # Runs read the problem that was made from the keys.
-        if not name.startswith("_"):
-            raise AttributeError(f"{name}: a problem does not change; replace({name}=...) returns another one")
-        super().__setattr__(name, value)
+    def _refusal(self, name: str) -> str:
+        return f"{name}: a problem does not change; replace({name}=...) returns another one"
 
     def _warn(self, level: int) -> None:
         for text in self._problem.warnings:
