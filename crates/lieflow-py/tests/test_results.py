@@ -58,6 +58,11 @@ def test_as_rotation_refuses_what_is_none():
             call()
         assert caught.value.argument == argument
     assert lf.so3.as_rotation(np.eye(3)).magnitude() == 0
+    parts = lf.solve_ivp(lambda t, y: {"R": [0, 0, 1.0], "n": [0, 0]}, (0, 1), START, group=PARTS, frame="body")
+    for run, names in ((parts, "R, n"), (lf.solve_ivp(BODY, (0, 1), quantities="omega_body"), "omega_body")):
+        with pytest.raises(lf.ArgumentError, match=rf"^y: the quantities {names}, expected attitude or quaternion among them"):
+            run.as_rotation()
+    assert lf.so3.as_rotation(parts.R).magnitude()[-1] == pytest.approx(1.0)
 
 
 def expression(f, t, y0, right):

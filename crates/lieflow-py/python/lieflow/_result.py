@@ -310,7 +310,11 @@ class Result:
 
         y = self.y
         if isinstance(y, Quantities):
-            y = y.get("attitude", y.get("quaternion", np.empty(0)))
+            known = [name for name in ("attitude", "quaternion") if name in y]
+            if not known:
+                expected = "attitude or quaternion among them; lieflow.so3.as_rotation takes rotations of another name"
+                raise ArgumentError("y", f"the quantities {', '.join(y)}", expected)
+            y = y[known[0]]
         if y.shape[1:] == (3, 3) and np.isrealobj(y):
             first("y", ~so3.contains(y, MEMBERSHIP), "a matrix that is no rotation", "rotations")
             return Rotation.from_matrix(y)
