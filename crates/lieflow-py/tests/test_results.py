@@ -146,7 +146,13 @@ def test_a_result_is_read_by_names_too():
     assert dict(r)["t"] is r.t and list(r) == r.keys()
     named = lf.solve_ivp(BODY, (0, 1))
     assert named["attitude"] is named.attitude and "energy" in named["drift"]
+    for result, quantities in ((r, []), (named, list(named.y))):
+        names = result.keys()
+        assert names[-len(quantities) :] == quantities if quantities else "attitude" not in result
+        assert all(name in result and result[name] is not KeyError for name in names) and list(dict(result)) == names
+    assert "attitude" in named and "attitude" in named.keys() and dict(named)["attitude"] is named.attitude
     for name in ("check", "_rows", "nothing"):
+        assert name not in named
         with pytest.raises(KeyError, match=name):
             named[name]
 

@@ -404,11 +404,15 @@ class Result:
         return {name: error(*[end[name] for end in ends]) for name in self.y_end.keys()}
 
     def keys(self) -> list[str]:
-        """Return the names of what the result has, for ``r["y"]`` and ``dict(r)``."""
-        return [*(name for name in self.__dict__ if not name.startswith("_")), "success", "drift"]
+        """Return the names of what the result has, the quantities too, for ``r["y"]`` and ``dict(r)``."""
+        own = [*(name for name in self.__dict__ if not name.startswith("_")), "success", "drift"]
+        return list(dict.fromkeys([*own, *(self.y if isinstance(self.y, Quantities) else ())]))
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.keys()
 
     def __getitem__(self, name: str) -> Any:
-        if name in self.keys() or isinstance(self.y, Quantities) and name in self.y:
+        if name in self:
             return getattr(self, name)
         raise KeyError(f"the result has no {name!r}")
 
