@@ -216,9 +216,25 @@ def test_a_refused_time_within_a_step_is_explained():
 def test_a_state_off_m_is_told_by_its_name():
     run = lf.Integrator(lambda t, y: [0, 0, 1.0], y0=np.eye(3), group="SO(3)", frame="body")
     for name, value in (("y", 2 * np.eye(3)), ("state", 2 * np.eye(3))):
-        with pytest.raises(lf.ArgumentError, match=r"^y: a point at a relative distance of 8.0e0 from SO\(3\), expected at most 1e-6$"):
+        with pytest.raises(lf.ArgumentError, match=rf"^{name}: a point at a relative distance of 8.0e0 from SO\(3\), expected at most 1e-6$"):
             setattr(run, name, value)
     assert np.array_equal(run.y, np.eye(3))
+    run = lf.Integrator(lambda t, y: np.zeros(6), y0=np.eye(4), group="SE(3)", frame="body")
+    pose = np.eye(4)
+    pose[3, 1] = 0.5
+    for name in ("y", "state"):
+        with pytest.raises(lf.ArgumentError, match=rf"^{name}\[3, 1\]: 0.5, expected 0: the last row"):
+            setattr(run, name, pose)
+
+
+def test_args_are_those_of_a_run():
+    for args, words in ((2, "a value of type int"), ("ab", "the text 'ab'"), (None, "None")):
+        for run in (lf.Integrator, lambda f, method, *rest, **keys: lf.solve_ivp(f, *rest, **keys)):
+            with pytest.raises(TypeError, match=f"^args: {words}, expected a tuple"):
+                run(lambda t, y, *more: [0, 0, 1.0], None, (0, 1), np.eye(3), args=args, **ROTATION)
+    run = lf.Integrator(lambda t, y, w: [0, 0, w], None, (0, 1), np.eye(3), args=[2.0], **ROTATION)
+    run.advance_to(1.0)
+    assert np.abs(lf.so3.log(run.y) - [0, 0, 2]).max() < 1e-13
 
 
 @pytest.mark.parametrize("method", ["rkmk dop853", "rkmk dopri5", "rkmk bs3 cay", "cf4"])

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from ._arrays import Array, name_of, number, real
 from ._errors import ArgumentError
 from ._fields import Parts
-from ._ivp import METHOD, Ready, check_of_problem, check_stops, settings_of, span_of
+from ._ivp import METHOD, Ready, args_of, check_of_problem, check_stops, settings_of, span_of
 from ._problems import Problem
 from ._unitary import ComplexPoints
 
@@ -66,7 +66,7 @@ class Integrator:
         for name in steps:
             if name not in known:
                 raise TypeError(f"{name}: not an argument of Integrator, expected one of {', '.join(known)}")
-        span, settings, args = span_of(t_span), settings_of(**steps, linear=linear), tuple(args)
+        span, settings, args = span_of(t_span), settings_of(**steps, linear=linear), args_of(args)
         asked = problem.asked(quantities) if isinstance(problem, Problem) else ()
         # Copies, from which a copy of the run is made: the caller may change its arrays and lists.
         self._given = (
@@ -155,7 +155,11 @@ class Integrator:
             raise ArgumentError(name, "a number that is not finite", "finite numbers")
         if flat.size != self._run.state().size:
             raise ArgumentError(name, f"{flat.size} numbers", f"{self._run.state().size} numbers")
-        self._run.set_state(np.ascontiguousarray(flat))
+        try:
+            self._run.set_state(np.ascontiguousarray(flat))
+        except ArgumentError as error:
+            of, bracket, place = error.argument.partition("[")
+            raise ArgumentError((name if of == "y" else of) + bracket + place, error.value, error.expected) from None
 
     def _shown(self, row: Array) -> Any:
         return row if self._split is None else self._split(row)

@@ -66,6 +66,13 @@ def span_of(t_span: Any) -> tuple[float, float]:
     return start, end
 
 
+def args_of(args: Any) -> tuple[Any, ...]:
+    """Return the arguments of f as a tuple."""
+    if isinstance(args, (str, bytes)) or not isinstance(args, Iterable):
+        raise TypeError(f"args: {what(args)}, expected a tuple, as in args=(2.0,)")
+    return tuple(args)
+
+
 def times_of(t_eval: Any, span: tuple[float, float]) -> Array | None:
     """Return the times of the output, which lie in the span."""
     if t_eval is None:
@@ -382,9 +389,7 @@ def solve_ivp(
     span = span_of(t_span)
     if method is not None:
         name_of("method", method)
-    if isinstance(args, (str, bytes)) or not isinstance(args, Iterable):
-        raise TypeError(f"args: {what(args)}, expected a tuple, as in args=(2.0,)")
-    args = tuple(args)
+    args = args_of(args)
     if not (callback is None or callable(callback)):
         raise TypeError(f"callback: a value of type {type(callback).__name__}, expected a function of t and y")
     planned = events_of(events)
