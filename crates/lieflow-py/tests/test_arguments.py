@@ -281,3 +281,23 @@ def test_the_estimate_of_an_error_warns_once_and_here(fun):
     with pytest.warns(RuntimeWarning, match="zeros of events may be missed") as told:
         r.estimate_error()
     assert [entry.filename for entry in told] == [__file__]
+
+
+def test_the_attributes_of_an_event_are_checked_when_they_are_set():
+    event = lf.Event("y11", terminal=True, direction=-1)
+    event.terminal, event.direction, event.points = np.True_, np.float32(1.0), 7
+    assert (event.terminal, event.direction, event.points) == (1, 1.0, 7)
+    for name, wrong, words in (("direction", None, "direction: None, expected a number"), ("terminal", "yes", "terminal: 'yes'"),
+                               ("g", 3, "g: a value of type int"), ("change", 3, "change: a value of type int"),
+                               ("name", 3, "name: a value of type int, expected a name")):
+        with pytest.raises(TypeError, match=f"^{words}"):
+            setattr(event, name, wrong)
+        with pytest.raises(TypeError, match=f"^{words}"):
+            lf.Event(**{"g": "y11", name: wrong})
+    with pytest.raises(lf.ArgumentError, match="^points: 0, expected an integer ≥ 1"):
+        event.points = 0
+    with pytest.raises(AttributeError):
+        event.stops = 1
+    assert (event.terminal, event.direction, event.points, event.name) == (1, 1.0, 7, "y11")
+    again = pickle.loads(pickle.dumps(event))
+    assert repr(again) == repr(event) and again.points == 7

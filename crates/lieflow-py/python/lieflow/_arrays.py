@@ -94,7 +94,7 @@ def own(name: str, x: Any) -> Array:
 
 def number(name: str, x: Any) -> float:
     """Return x as one real number."""
-    if isinstance(x, (str, bytes, complex)):
+    if x is None or isinstance(x, (str, bytes, complex)):
         raise TypeError(f"{name}: {x!r}, expected a number")
     array = real(name, x)
     if array.ndim > 0:

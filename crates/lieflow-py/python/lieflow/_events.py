@@ -7,11 +7,45 @@ from typing import Any
 
 import numpy as np
 
-from ._arrays import number, whole
+from ._arrays import name_of, number, whole
 from ._errors import ArgumentError
 from ._result import Result
 
 __all__ = ["Event", "changes_of", "events_of", "for_second_run", "texts_of"]
+
+
+def _function(g: Any) -> Any:
+    if not (callable(g) or isinstance(g, str)):
+        raise TypeError(f"g: a value of type {type(g).__name__}, expected a function of t and y, or a formula")
+    return g
+
+
+def _change(change: Any) -> Any:
+    if change is not None and not callable(change):
+        raise TypeError(f"change: a value of type {type(change).__name__}, expected a function of t and y")
+    return change
+
+
+def _terminal(terminal: Any) -> int:
+    return int(terminal) if isinstance(terminal, (bool, np.bool_)) else whole("terminal", terminal)
+
+
+def _direction(direction: Any) -> float:
+    found = number("direction", direction)
+    if found != found:
+        raise ArgumentError("direction", repr(direction), "a number: its sign tells which zeros count")
+    return found
+
+
+def _points(points: Any) -> int | None:
+    return None if points is None else whole("points", points, 1, 100_000)
+
+
+#: What checks the attributes of an event, also those that are set later.
+_CHECKS: dict[str, Callable[[Any], Any]] = {
+    "g": _function, "change": _change, "terminal": _terminal, "direction": _direction, "points": _points,
+    "name": lambda name: name_of("name", name),
+}
 
 
 class Event:
@@ -48,18 +82,13 @@ class Event:
         points: int | None = None,
         name: str | None = None,
     ) -> None:
-        if not (callable(g) or isinstance(g, str)):
-            raise TypeError(f"g: a value of type {type(g).__name__}, expected a function of t and y, or a formula")
-        if change is not None and not callable(change):
-            raise TypeError(f"change: a value of type {type(change).__name__}, expected a function of t and y")
         self.g, self.change = g, change
-        self.terminal = int(terminal) if isinstance(terminal, (bool, np.bool_)) else whole("terminal", terminal)
-        self.direction = number("direction", direction)
-        if self.direction != self.direction:
-            raise ArgumentError("direction", repr(direction), "a number: its sign tells which zeros count")
-        self.points = None if points is None else whole("points", points, 1, 100_000)
-        default = g if isinstance(g, str) else getattr(g, "__name__", "event")
-        self.name = name if name is not None else default
+        self.terminal, self.direction, self.points = terminal, direction, points
+        self.name = name if name is not None else g if isinstance(g, str) else getattr(g, "__name__", "event")
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        check = _CHECKS.get(name)
+        super().__setattr__(name, value if check is None else check(value))
 
     def _without_end(self) -> Event:
         """The event that ends no run."""
