@@ -301,3 +301,19 @@ def test_the_attributes_of_an_event_are_checked_when_they_are_set():
     assert (event.terminal, event.direction, event.points, event.name) == (1, 1.0, 7, "y11")
     again = pickle.loads(pickle.dumps(event))
     assert repr(again) == repr(event) and again.points == 7
+
+
+BEYOND = "a number beyond the range of float64"
+
+
+@pytest.mark.parametrize("number", [10**400, -(10**400), Fraction(10**400)], ids=["large", "negative", "fraction"])
+def test_a_number_beyond_the_range_of_an_argument_is_named(number):
+    for name, call in {
+        "t_span": lambda: lf.solve_ivp(turn, (0, number), np.eye(3), **ROTATION),
+        "rtol": lambda: lf.solve_ivp(turn, (0, 1), np.eye(3), rtol=number, **ROTATION),
+        "t": lambda: lf.Integrator(turn, None, (0, 1), np.eye(3), **ROTATION).advance_to(number),
+        "a": lambda: lf.Field("SO(3)", ["a", "0", "0"], a=number),
+    }.items():
+        with pytest.raises(TypeError, match=f"^{name}: {BEYOND}, expected "):
+            call()
+    assert lf.solve_ivp(turn, (0, 10**3 // 10**3), np.eye(3), **ROTATION).success

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import operator
+import sys
 from collections.abc import Callable, Sequence
 from fractions import Fraction
 from numbers import Real
@@ -42,6 +43,8 @@ def what(x: Any) -> str:
             x = np.asarray(x)
         except ValueError:
             return "rows of different lengths"
+    if _is_real(x) and sys.float_info.max < abs(x) < math.inf:
+        return "a number beyond the range of float64"
     if not isinstance(x, np.ndarray):
         return f"a value of type {type(x).__name__}"
     if x.dtype.kind == "c":

@@ -60,7 +60,10 @@ def span_of(t_span: Any) -> tuple[float, float]:
         span = real("t_span", t_span)
         if span.shape != (2,):
             raise ArgumentError("t_span", f"shape {span.shape}", "two times")
-    start, end = float(span[0]), float(span[1])
+    try:
+        start, end = float(span[0]), float(span[1])
+    except OverflowError:
+        raise TypeError(f"t_span: {what(span)}, expected two numbers") from None
     if end != end or start - start != 0.0:
         raise ArgumentError("t_span", repr(t_span), "two times, the first one finite")
     return start, end
