@@ -247,8 +247,17 @@ fn of_element(py: Python<'_>, inputs: &[Named<'_>], lead: &[usize], error: &Erro
         return argument(py, &name, "a number that is not finite", "finite numbers");
     }
     let (of, value, expected) = words(first, source);
+    // The place of an entry stands after that of its matrix: the 3, 0 of g[2, 3, 0].
+    let (of, entry) = of.split_once('[').unwrap_or((of.as_str(), ""));
     let input = inputs.iter().find(|input| input.0 == of);
     let name = named(input.map_or(first, |input| input.0), false);
+    let name = if input.is_none() || entry.is_empty() {
+        name
+    } else if let Some(place) = name.strip_suffix(']') {
+        format!("{place}, {entry}")
+    } else {
+        format!("{name}[{entry}")
+    };
     argument(py, &name, value, expected)
 }
 

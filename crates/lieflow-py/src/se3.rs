@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use crate::arrays::{Input, common, fill, output};
 
 const GROUP: Se3 = Se3::new();
-/// How far from a rotation, and from the last row 0 0 0 1, a matrix may be.
+/// How far each entry of the last row may be from 0 0 0 1.
 const OFF_MAX: f64 = 1e-6;
 
 type Pair = (Vector3<f64>, Vector3<f64>);
@@ -26,11 +26,12 @@ fn write_pair((a, b): &Pair, out: &mut [f64]) {
 }
 
 fn element(x: &[f64]) -> Result<Element, Error> {
-    // A sum, because a maximum would lose NaN.
-    let off = (12..15).map(|k| x[k].abs()).sum::<f64>() + (x[15] - 1.0).abs();
-    if off.is_nan() || off > OFF_MAX {
-        let expected = "a matrix with the last row 0 0 0 1".to_owned();
-        return Err(Error::OutOfRange { arg: "g".into(), value: off, expected });
+    for (j, right) in [0.0, 0.0, 0.0, 1.0].into_iter().enumerate() {
+        let value = x[12 + j];
+        if value.is_nan() || (value - right).abs() > OFF_MAX {
+            let expected = format!("{right}: the last row of [R x; 0 1] is [0, 0, 0, 1]");
+            return Err(Error::OutOfRange { arg: format!("g[3, {j}]"), value, expected });
+        }
     }
     let r = Matrix3::from_fn(|i, j| x[4 * i + j]);
     Ok((r, Vector3::from_fn(|i, _| x[4 * i + 3])))

@@ -12,7 +12,7 @@ use numpy::{PyArrayDyn, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arrays::{Input, output};
+use crate::arrays::{Input, element, output};
 use crate::curve::{Curve, at_times};
 use crate::error::{argument, refused, words};
 use crate::field::{self, Callable, Raised};
@@ -191,7 +191,7 @@ impl SampledField {
                 let expected = format!("a time within the samples, from {first} to {last}");
                 let wrong = |t: &f64| !(first <= *t && *t <= last);
                 let i = times.iter().position(wrong).unwrap_or_default();
-                let name = format!("t[{i}]");
+                let name = element("t", &lead, i);
                 Python::attach(|py| argument(py, &name, times[i].to_string(), expected))
             })
         })?;

@@ -6,13 +6,18 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
 
+use crate::error::argument;
+
 /// The tree of numbers, texts, lists and dicts. `path` is that of the key, counted from 0 as in Python.
 pub(crate) fn tree(path: &str, x: &Bound<'_, PyAny>) -> PyResult<Tree> {
     if x.is_instance_of::<PyBool>() {
         return Ok(Tree::Bool(x.extract()?));
     }
     if x.is_instance_of::<PyInt>() {
-        return Ok(x.extract::<i64>().map_or(Tree::Number(x.extract()?), Tree::Whole));
+        let number = x.extract::<i64>().map(Tree::Whole);
+        return number.or_else(|_| x.extract::<f64>().map(Tree::Number)).map_err(|_| {
+            argument(x.py(), path, "a number beyond the range of float64", "at most 1.8e308")
+        });
     }
     if x.is_instance_of::<PyFloat>() {
         return Ok(Tree::Number(x.extract()?));

@@ -317,3 +317,38 @@ def test_a_number_beyond_the_range_of_an_argument_is_named(number):
         with pytest.raises(TypeError, match=f"^{name}: {BEYOND}, expected "):
             call()
     assert lf.solve_ivp(turn, (0, 10**3 // 10**3), np.eye(3), **ROTATION).success
+
+
+def test_a_number_beyond_the_range_of_a_key_is_named():
+    keys, start = {"inertia": [1, 2, 2.5], "omega_body": [1, 0, 0]}, ((0, 1), np.eye(3))
+    for name, call in {
+        "inertia[2]": lambda: lf.RigidBody(**{**keys, "inertia": [1, 2, 10**400]}),
+        "parameters.a": lambda: lf.RigidBody(**keys, parameters={"a": -(10**400)}),
+        "field[1]": lambda: lf.solve_ivp(lf.Field("SO(3)", ["0", 10**400, "0"]), *start, frame="body"),
+        "let.c": lambda: lf.solve_ivp(lf.Field("SO(3)", ["c", "0", "0"], let={"c": 10**400}), *start, frame="body"),
+    }.items():
+        with pytest.raises(lf.ArgumentError) as caught:
+            call()
+        assert caught.value.argument == name and BEYOND in str(caught.value)
+
+
+def test_a_wrong_last_row_of_a_motion_is_named():
+    pose = np.eye(4)
+    pose[3, 1] = 0.5
+    last = pose.copy()
+    last[3] = [0, 0, 0, 2]
+    for g, words in ((pose, "g[3, 1]: 0.5, expected 0"), (np.stack([np.eye(4), pose]), "g[1, 3, 1]: 0.5, expected 0"),
+                     (last, "g[3, 3]: 2, expected 1"), (last[None, None], "g[0, 0, 3, 3]: 2, expected 1")):
+        with pytest.raises(lf.ArgumentError) as caught:
+            lf.se3.log(g)
+        assert str(caught.value) == f"{words}: the last row of [R x; 0 1] is [0, 0, 0, 1]"
+
+
+def test_times_of_samples_are_named():
+    with pytest.raises(lf.ArgumentError, match=r"^t\[2\]: 1, expected more than t\[1\] = 2$"):
+        lf.Samples([0, 2, 1], [1, 2, 3])
+    samples = lf.Samples([0, 1], [1, 2])
+    for t, name in ((1.5, "t"), ([0.5, 1.5], "t[1]"), ([[0.5, 0.5], [1.5, 0.5]], "t[1, 0]"), (-1, "t")):
+        with pytest.raises(lf.ArgumentError, match="expected a time within the samples, from 0 to 1") as caught:
+            samples(t)
+        assert caught.value.argument == name
