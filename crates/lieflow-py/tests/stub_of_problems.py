@@ -10,6 +10,7 @@ from lieflow import _problems
 HEAD = '''"""Every kind of problem as a class. Made by tests/stub_of_problems.py."""
 
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any, ClassVar
 
 import numpy as np
@@ -18,6 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _lieflow
 from ._fields import Quantities, Samples
 from ._result import Layout
+from ._types import Flag, HasMatrix, Real, Whole
 from ._unitary import ComplexState
 
 Array = NDArray[np.float64]
@@ -55,7 +57,7 @@ class Problem:
         self, method: str, quantities: Sequence[str] | str | None = None
     ) -> tuple[int | None, int | None]: ...
     def exact(
-        self, t: ArrayLike, quantities: Sequence[str] | str | None = None, *, t0: float = 0.0
+        self, t: ArrayLike, quantities: Sequence[str] | str | None = None, *, t0: Real = 0.0
     ) -> Quantities | None: ...
     def asked(self, quantities: Sequence[str] | str | None) -> tuple[str, ...]: ...
     def _both(
@@ -75,13 +77,27 @@ KINDS: dict[str, type[Problem]]
 '''
 
 
+#: The types of arguments for those that the kinds state.
+WIDER = {"bool": "Flag", "int": "Whole", "float": "Real", "Samples": "Samples | Path"}
+
+
+def type_of(name: str, what: str, of: str) -> str:
+    """Return the type of a key, whose values may be those of NumPy and of SciPy."""
+    types = [WIDER.get(one, one) for one in dict.fromkeys(of.split(" | "))]
+    if of == "Sequence[Any]" and "a dict of" not in what:
+        types.append("NDArray[Any]")
+    if name in ("attitude", "quaternion"):
+        types.append("HasMatrix")
+    return " | ".join(types)
+
+
 def stub() -> str:
     """Return the text of the stub."""
     text = [HEAD]
     for made in sorted(_problems.KINDS.values(), key=lambda made: made.__name__):
         keys = "".join(
-            f"        {name}: {of}{' | None = None' if optional else ''},\n"
-            for name, _, of, optional, *_ in made.key_table
+            f"        {name}: {type_of(name, what, of)}{' | None = None' if optional else ''},\n"
+            for name, what, of, optional, *_ in made.key_table
         )
         text.append(f"class {made.__name__}(Problem):\n    def __init__(\n        self,\n        *,\n{keys}    ) -> None: ...\n")
     names = sorted(["KINDS", "Problem", "problem_of", *(made.__name__ for made in _problems.KINDS.values())])

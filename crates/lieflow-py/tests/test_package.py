@@ -34,6 +34,71 @@ def test_the_package_is_typed():
     assert done.returncode == 0, done.stdout + done.stderr
 
 
+PROGRAM = """
+from pathlib import Path
+from typing import Any
+import numpy as np
+import lieflow as lf
+
+class Rotation:
+    def as_matrix(self) -> np.ndarray[Any, np.dtype[np.float64]]:
+        return np.eye(3)
+
+def f(t: float, y: Any, *args: Any) -> Any:
+    return [0.0, 0.0, 1.0]
+
+turn, eye, eight = Rotation(), np.eye(3), np.int64(8)
+half, yes = np.float32(0.5), np.True_
+
+# Arrays are lists.
+lf.Schrodinger(hamiltonian=np.array([[1, 1j], [-1j, 1]]), amplitudes=np.array([1, 0]))
+lf.DensityMatrix(hamiltonian=np.eye(2, dtype=complex), density=np.eye(2) / 2)
+lf.MatrixOde(group="so", field=np.zeros((3, 3)))
+lf.SpinChain(spins=np.eye(3), ring=yes, damping=half)
+lf.Fluid(surface="sphere", n=eight, jets=np.ones((1, 2)), modes=np.ones((1, 4)))
+lf.DrivenBody(inertia=[1, 2, 3], omega_body=[1, 0, 0], samples=Path("rates.csv"))
+# Rotations of SciPy are arrays.
+lf.RigidBody(inertia=[1, 2, 3], omega_body=[1, 0, 0], attitude=turn)
+lf.RigidBody(inertia=[1, 2, 3], omega_body=[1, 0, 0], quaternion=turn)
+lf.FreeBodies(np.ones(3), np.ones((1, 3)), turn).advance("rkmk4", half, eight, threads=eight)
+lf.so3.log(turn), lf.so3.Ad(turn, [1, 0, 0]), lf.so3.contains(turn, half), lf.se3.log(turn), lf.SO(3).log(turn)
+lf.solve_ivp(f, (0, 1), turn, group="SO(3)", frame="body")
+# Numbers of NumPy are numbers.
+lf.SO(eight), lf.SO(eight, eight), lf.GL(eight), lf.U(eight), lf.so3.random((eight, 2)), lf.SO(3).dexpinv(eye, eye, q=eight)
+lf.expm(eye, threads=eight), lf.Event(f, terminal=yes, direction=half, points=eight)
+lf.solve_ivp(f, (np.int64(0), half), eye, group="SO(3)", frame="body", rtol=half, dt=eight, steps=eight, dense_output=yes, args=[2.0])
+run = lf.Integrator(f, None, np.array([0.0, 1.0]), eye, group="SO(3)", frame="body", linear=yes, args=[2.0], max_steps=eight)
+run.advance_to(half)
+run.interpolate(eight)
+# What is wrong is refused.
+lf.SO("3")  # type: ignore[arg-type]
+lf.U(2.5)  # type: ignore[arg-type]
+lf.so3.log(f)  # type: ignore[arg-type]
+lf.SpinChain(spins=[[1, 0, 0]], ring="yes")  # type: ignore[arg-type]
+lf.SpinChain(spins=[[1, 0, 0]], ring=1)  # type: ignore[arg-type]
+lf.Fluid(surface="sphere", n=2.5)  # type: ignore[arg-type]
+lf.RigidBodies(bodies=eye)  # type: ignore[arg-type]
+lf.RigidBody(inertia=turn, omega_body=[1, 0, 0])  # type: ignore[arg-type]
+lf.RigidBody(omega=[1, 0, 0])  # type: ignore[call-arg]
+lf.Event(f, direction="up")  # type: ignore[arg-type]
+lf.solve_ivp(f, (0, 1), eye, steps=half)  # type: ignore[arg-type]
+lf.solve_ivp(f, (0, 1), eye, rtol="1e-3")  # type: ignore[arg-type]
+lf.solve_ivp(f, (0, 1), eye, args="ab")  # type: ignore[arg-type]
+lf.solve_ivp(f, (0, 1), eye, args=2.0)  # type: ignore[arg-type]
+lf.solve_ivp(f, "01", eye)  # type: ignore[arg-type]
+lf.Integrator(f, None, 1.0, eye)  # type: ignore[arg-type]
+lf.Integrator(f, linear="yes")  # type: ignore[arg-type]
+"""
+
+
+def test_numbers_of_numpy_and_rotations_of_scipy_have_the_types_of_arguments(tmp_path):
+    pytest.importorskip("mypy")
+    (tmp_path / "program.py").write_text(PROGRAM)
+    command = [sys.executable, "-m", "mypy", "--strict", "--cache-dir", str(tmp_path / "cache"), str(tmp_path / "program.py")]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
 def test_only_numpy_is_imported():
     code = "import sys, lieflow; print([m for m in ('scipy', 'numba', 'pandas', 'matplotlib') if m in sys.modules])"
     assert subprocess.check_output([sys.executable, "-c", code], text=True).strip() == "[]"

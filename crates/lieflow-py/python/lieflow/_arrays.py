@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ._errors import ArgumentError
+from ._types import Matrices, Whole
 
 __all__ = [
     "MEMBERSHIP", "common", "elements", "finite", "first", "into", "kept", "leading", "name_of", "near", "number", "own", "pair", "real", "series", "size_of_elements", "together",
@@ -201,7 +202,7 @@ def wrong_out(out: Any, dtype: Any, shape: tuple[int, ...]) -> ArgumentError:
     return ArgumentError("out", described, f"a writeable array of {dtype} in C order, shape {shape}")
 
 
-def leading(size: int | Sequence[int] | None) -> tuple[int, ...]:
+def leading(size: Whole | Sequence[Whole] | None) -> tuple[int, ...]:
     """Return the leading axes of random elements: none, one or several."""
     if size is None:
         return ()
@@ -286,7 +287,7 @@ def together(name_a: str, a: Array, tail_a: int, name_b: str, b: Array, tail_b: 
     return np.ascontiguousarray(wide_a), np.ascontiguousarray(wide_b)
 
 
-def elements(name: str, x: ArrayLike, tail: tuple[int, ...], check: bool = True) -> Array:
+def elements(name: str, x: Matrices, tail: tuple[int, ...], check: bool = True) -> Array:
     """Return x as elements with these last axes; with ``check`` their numbers must be finite."""
     array = real(name, x)
     if array.ndim < len(tail) or array.shape[array.ndim - len(tail) :] != tail:

@@ -12,6 +12,7 @@ from . import _lieflow
 from ._arrays import MEMBERSHIP, Array, finite, first, name_of, number, own, real, whole
 from .so3 import contains
 from ._errors import ArgumentError
+from ._types import Matrices, Real, Whole
 
 __all__ = ["FreeBodies"]
 
@@ -29,7 +30,7 @@ class FreeBodies:
         The rotations from the bodies to space. Without them only the momenta are computed.
     """
 
-    def __init__(self, inertia: ArrayLike, momentum: ArrayLike, attitude: ArrayLike | None = None) -> None:
+    def __init__(self, inertia: ArrayLike, momentum: ArrayLike, attitude: Matrices | None = None) -> None:
         m = real("momentum", momentum)
         if m.ndim != 2 or m.shape[1] != 3:
             raise ArgumentError("momentum", f"shape {m.shape}", "shape (N, 3)")
@@ -50,7 +51,7 @@ class FreeBodies:
         if self._bodies.impossible is not None:
             warnings.warn(self._bodies.impossible, UserWarning, stacklevel=2)
 
-    def advance(self, method: str, h: float, steps: int, threads: int = 1) -> None:
+    def advance(self, method: str, h: Real, steps: Whole, threads: Whole = 1) -> None:
         """Take steps of the size h with "rkmk4 exp", "rkmk4 cay" or "rk4-mg". The results are the same for any threads.
 
         After an error, such as that of a step which one body cannot take, all bodies are as before the call. After Ctrl-C all of

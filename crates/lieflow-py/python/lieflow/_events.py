@@ -10,6 +10,7 @@ import numpy as np
 from ._arrays import name_of, number, whole
 from ._errors import ArgumentError
 from ._result import Result
+from ._types import Flag, Real, Whole
 
 __all__ = ["Event", "changes_of", "events_of", "for_second_run", "texts_of"]
 
@@ -76,10 +77,10 @@ class Event:
     def __init__(
         self,
         g: Callable[..., Any] | str,
-        terminal: int | bool = 0,
-        direction: float = 0.0,
+        terminal: Whole | Flag = 0,
+        direction: Real = 0.0,
         change: Callable[..., Any] | None = None,
-        points: int | None = None,
+        points: Whole | None = None,
         name: str | None = None,
     ) -> None:
         self.g, self.change = g, change

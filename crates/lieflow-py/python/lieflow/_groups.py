@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _lieflow
 from ._arrays import Array, elements, into, leading, near, own, pair, real, size_of_elements, what, whole
 from ._errors import ArgumentError
+from ._types import Matrices, Real, Whole
 
 __all__ = ["GL", "Gm", "Group", "SL", "SO", "Sp", "expm"]
 
@@ -87,13 +88,13 @@ class Group:
         near(name, off, size, (f"the algebra of {self.name}", "an element of it"))
         return u
 
-    def _element(self, name: str, x: ArrayLike) -> Array:
+    def _element(self, name: str, x: Matrices) -> Array:
         """Elements of the group."""
         g = elements(name, x, (self.n, self.n))
         near(name, self._group.defect(g), size_of_elements(g), (self.name, "an element of it"))
         return g
 
-    def dexpinv(self, u: ArrayLike, v: ArrayLike, out: Array | None = None, *, q: int | None = None) -> Array:
+    def dexpinv(self, u: ArrayLike, v: ArrayLike, out: Array | None = None, *, q: Whole | None = None) -> Array:
         """Return dexp_u⁻¹(v), the inverse of dexp_u; right-trivialised.
 
         With q, the series Σ_k B_k/k! ad_u^k v is cut after k = q. Shapes: (..., n, n); leading axes broadcast.
@@ -108,7 +109,7 @@ class Group:
         """
         return self._group.ccsk(u, order, out)
 
-    def Ad(self, g: ArrayLike, u: ArrayLike, out: Array | None = None) -> Array:
+    def Ad(self, g: Matrices, u: ArrayLike, out: Array | None = None) -> Array:
         """Return Ad_g u = g u g⁻¹, shape (..., n, n)."""
         a, b = pair("g", self._element("g", g), 2, "u", self._algebra("u", u), 2)
         found = np.linalg.solve(np.swapaxes(a, -1, -2), np.swapaxes(a @ b, -1, -2))
@@ -128,14 +129,14 @@ class Group:
         a = a.swapaxes(-1, -2)
         return into(a @ b - b @ a, out)
 
-    def contains(self, g: ArrayLike, tol: float = 1e-12) -> NDArray[np.bool_]:
+    def contains(self, g: Matrices, tol: Real = 1e-12) -> NDArray[np.bool_]:
         """Return True for each matrix with ‖gᵀMg − M‖ ≤ tol (Frobenius).
 
         On SO(n) det g > 0, too; on SL(n) |det g − 1| ≤ tol or 1e-10; on GL(n) g has an inverse.
         """
         return np.asarray(self._group.defect(g) <= tol)
 
-    def random(self, size: int | Sequence[int] | None = None, rng: Any = None) -> Array:
+    def random(self, size: Whole | Sequence[Whole] | None = None, rng: Any = None) -> Array:
         """Return random elements, shape size + (n, n). On SO(n) they have Haar's measure."""
         lead = leading(size)
         seed = int(np.random.default_rng(rng).integers(0, 2**63))
@@ -150,23 +151,23 @@ def size_of(name: str, n: Any, least: int = 1) -> int:
     return whole(name, n, least)
 
 
-def SO(n: int, q: int = 0) -> Group:
+def SO(n: Whole, q: Whole = 0) -> Group:
     """Return SO(n), gᵀg = 𝟙 and det g = 1; or SO(n, q), gᵀMg = M with M = diag(1, …, −1) and n ones."""
     q = size_of("q", q, 0)
     return Group("so", size_of("n", n, 0 if q else 1), q)
 
 
-def GL(n: int) -> Group:
+def GL(n: Whole) -> Group:
     """Return GL(n), all invertible matrices."""
     return Group("gl", size_of("n", n))
 
 
-def SL(n: int) -> Group:
+def SL(n: Whole) -> Group:
     """Return SL(n), the matrices with det g = 1. For n > 2 cay leaves it: det cay(u) is not 1."""
     return Group("sl", size_of("n", n))
 
 
-def Sp(n: int) -> Group:
+def Sp(n: Whole) -> Group:
     """Return Sp(n) for even n = 2m, gᵀJg = J with J = [0 𝟙; −𝟙 0]."""
     return Group("sp", size_of("n", n))
 
@@ -183,7 +184,7 @@ def Gm(M: ArrayLike) -> Group:
 
 
 def expm(
-    A: ArrayLike, structure: str | None = None, threads: int = 1, out: NDArray[Any] | None = None
+    A: ArrayLike, structure: str | None = None, threads: Whole = 1, out: NDArray[Any] | None = None
 ) -> NDArray[Any]:
     """Return exp of each matrix of A, shape (..., n, n), float64 or complex128.
 

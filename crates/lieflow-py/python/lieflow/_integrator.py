@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -14,6 +14,7 @@ from ._errors import ArgumentError
 from ._fields import Parts
 from ._ivp import METHOD, Ready, args_of, check_of_problem, check_stops, settings_of, span_of
 from ._problems import Problem
+from ._types import Args, Flag, Matrices, Real, Span
 from ._unitary import ComplexPoints
 
 __all__ = ["Integrator"]
@@ -49,14 +50,14 @@ class Integrator:
         self,
         problem: Any,
         method: str | None = None,
-        t_span: Sequence[float] = (0.0, float("inf")),
-        y0: ArrayLike | dict[str, Any] | None = None,
+        t_span: Span = (0.0, float("inf")),
+        y0: Matrices | Mapping[str, Any] | None = None,
         *,
-        args: tuple[Any, ...] = (),
+        args: Args = (),
         group: Any = None,
         action: str = "translation",
         frame: str | None = None,
-        linear: bool = False,
+        linear: Flag = False,
         quantities: Sequence[str] | str | None = None,
         **steps: Any,
     ) -> None:
@@ -188,11 +189,11 @@ class Integrator:
         """Take one step, at most to the end of the span. Return the time. RuntimeError if the step fails."""
         return self._run.step()
 
-    def advance_to(self, t: float) -> None:
+    def advance_to(self, t: Real) -> None:
         """Take steps until the time is t; the last one ends there. f is not evaluated after t."""
         self._run.advance_to(number("t", t))
 
-    def interpolate(self, t: float) -> Any:
+    def interpolate(self, t: Real) -> Any:
         """Return the point at a time within the last step, by the dense output of the method."""
         return self._shown(self._run.interpolate(number("t", t)))
 

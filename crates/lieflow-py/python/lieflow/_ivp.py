@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
 from time import thread_time
 from typing import Any
@@ -20,6 +20,7 @@ from ._groups import Group
 from ._problems import Problem
 from ._result import Layout, OdeSolution, Result, warn_of_events
 from ._second_run import Repeated, beyond, changed, second
+from ._types import Args, Flag, Matrices, Real, Span, Whole
 from ._unitary import ComplexPoints, ComplexState, Unitary, is_su2, is_unitary_name
 
 __all__ = ["solve_ivp"]
@@ -150,7 +151,7 @@ class Ready:
     __slots__ = ("args", "calls", "field", "flat", "group", "kinks", "layout", "linear", "parts", "shape", "space", "space_args")
 
     def __init__(
-        self, fun: Any, y0: Any, args: tuple[Any, ...], group: Any, action: Any, frame: Any, linear: bool,
+        self, fun: Any, y0: Any, args: tuple[Any, ...], group: Any, action: Any, frame: Any, linear: Flag,
         span: tuple[float, float],
     ) -> None:
         if isinstance(fun, Field):
@@ -289,27 +290,27 @@ def _of_motions(name: str, change: Callable[..., Any]) -> Callable[..., Array]:
 
 def solve_ivp(
     fun: Callable[..., Any] | CFunction | Field | Samples | Problem,
-    t_span: Sequence[float] | NDArray[Any],
-    y0: ArrayLike | dict[str, Any] | None = None,
+    t_span: Span,
+    y0: Matrices | Mapping[str, Any] | None = None,
     *,
     method: str | None = None,
     t_eval: ArrayLike | None = None,
-    dense_output: bool = False,
+    dense_output: Flag = False,
     events: Any = None,
-    rtol: float | None = None,
-    atol: float | None = None,
-    first_step: float | None = None,
-    min_step: float | None = None,
-    max_step: float | None = None,
-    max_steps: int | None = None,
-    dt: float | None = None,
-    steps: int | None = None,
+    rtol: Real | None = None,
+    atol: Real | None = None,
+    first_step: Real | None = None,
+    min_step: Real | None = None,
+    max_step: Real | None = None,
+    max_steps: Whole | None = None,
+    dt: Real | None = None,
+    steps: Whole | None = None,
     stops: ArrayLike = (),
-    args: tuple[Any, ...] = (),
+    args: Args = (),
     group: str | Group | Unitary | Parts | None = None,
     action: str = "translation",
     frame: str | None = None,
-    linear: bool = False,
+    linear: Flag = False,
     quantities: Sequence[str] | str | None = None,
     callback: Callable[[float, Any], Any] | None = None,
 ) -> Result:
@@ -472,7 +473,7 @@ def check_stops(settings: dict[str, Any], span: tuple[float, float]) -> None:
             raise ArgumentError(f"stops[{i}]", repr(stop), f"a time within [{low}, {high}]")
 
 
-def check_of_problem(group: Any, frame: Any, action: str, linear: bool) -> None:
+def check_of_problem(group: Any, frame: Any, action: str, linear: Flag) -> None:
     """Raise ArgumentError for an argument of a field beside a problem."""
     for name, value, default in (("group", group, None), ("frame", frame, None), ("action", action, "translation")):
         if value != default:

@@ -17,6 +17,7 @@ from ._arrays import Array, finite, kept, name_of, number, own, real, what
 from ._errors import ArgumentError
 from ._fields import Quantities, Samples, State
 from ._result import Layout
+from ._types import Real
 from ._unchanging import Unchanging
 from ._unitary import ComplexState, complex_numbers
 from ._values import alike, is_complex, part, plain
@@ -141,7 +142,7 @@ class Problem(Unchanging):
         """
         return self._model(self.asked(quantities)).orders(name_of("method", method))
 
-    def exact(self, t: ArrayLike, quantities: Sequence[str] | str | None = None, *, t0: float = 0.0) -> Quantities | None:
+    def exact(self, t: ArrayLike, quantities: Sequence[str] | str | None = None, *, t0: Real = 0.0) -> Quantities | None:
         """Return the exact motion at the times t, from the start at t0; None where it is not known.
 
         Shapes: that of t, followed by that of each quantity. Error: some 1e-14 times the phase that the motion has passed.

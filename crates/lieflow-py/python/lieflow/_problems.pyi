@@ -1,6 +1,7 @@
 """Every kind of problem as a class. Made by tests/stub_of_problems.py."""
 
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any, ClassVar
 
 import numpy as np
@@ -9,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _lieflow
 from ._fields import Quantities, Samples
 from ._result import Layout
+from ._types import Flag, HasMatrix, Real, Whole
 from ._unitary import ComplexState
 
 Array = NDArray[np.float64]
@@ -46,7 +48,7 @@ class Problem:
         self, method: str, quantities: Sequence[str] | str | None = None
     ) -> tuple[int | None, int | None]: ...
     def exact(
-        self, t: ArrayLike, quantities: Sequence[str] | str | None = None, *, t0: float = 0.0
+        self, t: ArrayLike, quantities: Sequence[str] | str | None = None, *, t0: Real = 0.0
     ) -> Quantities | None: ...
     def asked(self, quantities: Sequence[str] | str | None) -> tuple[str, ...]: ...
     def _both(
@@ -79,7 +81,7 @@ class Composed(Problem):
         *,
         parts: Sequence[Any],
         invariants: Mapping[str, Any] | None = None,
-        samples: Samples | str | None = None,
+        samples: Samples | Path | str | None = None,
         interpolation: str | None = None,
         let: Mapping[str, Any] | None = None,
         parameters: Mapping[str, Any] | None = None,
@@ -89,20 +91,20 @@ class DensityMatrix(Problem):
     def __init__(
         self,
         *,
-        hamiltonian: Sequence[Any] | None = None,
-        hamiltonian_imaginary: Sequence[Any] | None = None,
+        hamiltonian: Sequence[Any] | NDArray[Any] | None = None,
+        hamiltonian_imaginary: Sequence[Any] | NDArray[Any] | None = None,
         energies: Numbers | None = None,
         coupling: Numbers | None = None,
         coupling_imaginary: Numbers | None = None,
-        frequency: float | str | None = None,
-        phase: float | str | None = None,
+        frequency: Real | str | None = None,
+        phase: Real | str | None = None,
         pulse: Numbers | None = None,
-        hbar: float | str | None = None,
+        hbar: Real | str | None = None,
         density: Numbers | None = None,
         density_imaginary: Numbers | None = None,
         amplitudes: Numbers | None = None,
         amplitudes_imaginary: Numbers | None = None,
-        samples: Samples | str | None = None,
+        samples: Samples | Path | str | None = None,
         interpolation: str | None = None,
         let: Mapping[str, Any] | None = None,
         parameters: Mapping[str, Any] | None = None,
@@ -121,24 +123,24 @@ class DrivenBody(Problem):
     def __init__(
         self,
         *,
-        inertia: Numbers | Numbers | None = None,
+        inertia: Numbers | None = None,
         inverse_inertia: Numbers | None = None,
         shape: Mapping[str, Any] | None = None,
         omega_body: Numbers | None = None,
         momentum_body: Numbers | None = None,
         omega_space: Numbers | None = None,
         momentum_space: Numbers | None = None,
-        attitude: Numbers | None = None,
-        quaternion: Numbers | None = None,
+        attitude: Numbers | HasMatrix | None = None,
+        quaternion: Numbers | HasMatrix | None = None,
         euler: Mapping[str, Any] | None = None,
         fixed: Mapping[str, Any] | None = None,
         weight: Numbers | None = None,
         thruster: Numbers | None = None,
-        damping: float | str | None = None,
+        damping: Real | str | None = None,
         control: Numbers | None = None,
-        torque: str | float | Numbers | None = None,
-        torque_space: str | float | Numbers | None = None,
-        samples: Samples | str | None = None,
+        torque: str | Real | Numbers | None = None,
+        torque_space: str | Real | Numbers | None = None,
+        samples: Samples | Path | str | None = None,
         interpolation: str | None = None,
         let: Mapping[str, Any] | None = None,
         parameters: Mapping[str, Any] | None = None,
@@ -149,9 +151,9 @@ class Euler(Problem):
         self,
         *,
         algebra: str,
-        hamiltonian: str | float | None = None,
+        hamiltonian: str | Real | None = None,
         inverse_inertia: Numbers | None = None,
-        momentum: Numbers | Numbers,
+        momentum: Numbers,
         let: Mapping[str, Any] | None = None,
         parameters: Mapping[str, Any] | None = None,
     ) -> None: ...
@@ -161,10 +163,10 @@ class Fluid(Problem):
         self,
         *,
         surface: str,
-        n: int | str,
+        n: Whole | str,
         random: Mapping[str, Any] | None = None,
-        jets: Sequence[Any] | None = None,
-        modes: Sequence[Any] | None = None,
+        jets: Sequence[Any] | NDArray[Any] | None = None,
+        modes: Sequence[Any] | NDArray[Any] | None = None,
         vortices: Sequence[Any] | None = None,
         parameters: Mapping[str, Any] | None = None,
     ) -> None: ...
@@ -173,15 +175,15 @@ class HeavyTop(Problem):
     def __init__(
         self,
         *,
-        inertia: Numbers | Numbers | None = None,
+        inertia: Numbers | None = None,
         inverse_inertia: Numbers | None = None,
         shape: Mapping[str, Any] | None = None,
         omega_body: Numbers | None = None,
         momentum_body: Numbers | None = None,
         omega_space: Numbers | None = None,
         momentum_space: Numbers | None = None,
-        attitude: Numbers | None = None,
-        quaternion: Numbers | None = None,
+        attitude: Numbers | HasMatrix | None = None,
+        quaternion: Numbers | HasMatrix | None = None,
         euler: Mapping[str, Any] | None = None,
         fixed: Mapping[str, Any] | None = None,
         weight: Numbers,
@@ -195,7 +197,7 @@ class Hill(Problem):
         *,
         a: Numbers,
         q: Numbers,
-        period: float | str,
+        period: Real | str,
         parameters: Mapping[str, Any] | None = None,
     ) -> None: ...
 
@@ -214,7 +216,7 @@ class Lorentz(Problem):
     def __init__(
         self,
         *,
-        charge_to_mass: float | str,
+        charge_to_mass: Real | str,
         electric: Numbers,
         magnetic: Numbers,
         velocity: Numbers,
@@ -226,10 +228,10 @@ class Lyapunov(Problem):
         self,
         *,
         x: Numbers,
-        variables: Sequence[Any] | None = None,
-        field: str | float | Numbers,
+        variables: Sequence[Any] | NDArray[Any] | None = None,
+        field: str | Real | Numbers,
         let: Mapping[str, Any] | None = None,
-        samples: Samples | str | None = None,
+        samples: Samples | Path | str | None = None,
         interpolation: str | None = None,
         parameters: Mapping[str, Any] | None = None,
     ) -> None: ...
@@ -238,8 +240,8 @@ class Mathieu(Problem):
     def __init__(
         self,
         *,
-        a: float | str,
-        q: float | str,
+        a: Real | str,
+        q: Real | str,
         parameters: Mapping[str, Any] | None = None,
     ) -> None: ...
 
@@ -249,11 +251,11 @@ class MatrixOde(Problem):
         *,
         group: str,
         action: str | None = None,
-        field: Sequence[Any],
-        field_imaginary: Sequence[Any] | None = None,
+        field: Sequence[Any] | NDArray[Any],
+        field_imaginary: Sequence[Any] | NDArray[Any] | None = None,
         start: Numbers | None = None,
         start_imaginary: Numbers | None = None,
-        samples: Samples | str | None = None,
+        samples: Samples | Path | str | None = None,
         interpolation: str | None = None,
         let: Mapping[str, Any] | None = None,
         parameters: Mapping[str, Any] | None = None,
@@ -299,15 +301,15 @@ class RigidBody(Problem):
     def __init__(
         self,
         *,
-        inertia: Numbers | Numbers | None = None,
+        inertia: Numbers | None = None,
         inverse_inertia: Numbers | None = None,
         shape: Mapping[str, Any] | None = None,
         omega_body: Numbers | None = None,
         momentum_body: Numbers | None = None,
         omega_space: Numbers | None = None,
         momentum_space: Numbers | None = None,
-        attitude: Numbers | None = None,
-        quaternion: Numbers | None = None,
+        attitude: Numbers | HasMatrix | None = None,
+        quaternion: Numbers | HasMatrix | None = None,
         euler: Mapping[str, Any] | None = None,
         fixed: Mapping[str, Any] | None = None,
         parameters: Mapping[str, Any] | None = None,
@@ -327,12 +329,12 @@ class RigidMotion(Problem):
     def __init__(
         self,
         *,
-        omega: str | float | Numbers,
-        velocity: str | float | Numbers,
+        omega: str | Real | Numbers,
+        velocity: str | Real | Numbers,
         frame: str | None = None,
-        attitude: Numbers | None = None,
+        attitude: Numbers | HasMatrix | None = None,
         position: Numbers | None = None,
-        samples: Samples | str | None = None,
+        samples: Samples | Path | str | None = None,
         interpolation: str | None = None,
         let: Mapping[str, Any] | None = None,
         parameters: Mapping[str, Any] | None = None,
@@ -342,18 +344,18 @@ class Schrodinger(Problem):
     def __init__(
         self,
         *,
-        hamiltonian: Sequence[Any] | None = None,
-        hamiltonian_imaginary: Sequence[Any] | None = None,
+        hamiltonian: Sequence[Any] | NDArray[Any] | None = None,
+        hamiltonian_imaginary: Sequence[Any] | NDArray[Any] | None = None,
         energies: Numbers | None = None,
         coupling: Numbers | None = None,
         coupling_imaginary: Numbers | None = None,
-        frequency: float | str | None = None,
-        phase: float | str | None = None,
+        frequency: Real | str | None = None,
+        phase: Real | str | None = None,
         pulse: Numbers | None = None,
-        hbar: float | str | None = None,
+        hbar: Real | str | None = None,
         amplitudes: Numbers,
         amplitudes_imaginary: Numbers | None = None,
-        samples: Samples | str | None = None,
+        samples: Samples | Path | str | None = None,
         interpolation: str | None = None,
         let: Mapping[str, Any] | None = None,
         parameters: Mapping[str, Any] | None = None,
@@ -363,7 +365,7 @@ class SphericalPendulum(Problem):
     def __init__(
         self,
         *,
-        gravity_over_length: float | str,
+        gravity_over_length: Real | str,
         direction: Numbers,
         velocity: Numbers,
         parameters: Mapping[str, Any] | None = None,
@@ -374,7 +376,7 @@ class Spin(Problem):
         self,
         *,
         field: Numbers,
-        rate: float | str,
+        rate: Real | str,
         moment: Numbers,
         parameters: Mapping[str, Any] | None = None,
     ) -> None: ...
@@ -383,15 +385,15 @@ class SpinChain(Problem):
     def __init__(
         self,
         *,
-        spins: Sequence[Any] | None = None,
+        spins: Sequence[Any] | NDArray[Any] | None = None,
         wave: Mapping[str, Any] | None = None,
-        ring: bool | None = None,
-        exchange: str | float | Numbers | None = None,
-        dm: str | float | Numbers | None = None,
-        anisotropy: str | float | Numbers | None = None,
-        field: str | float | Numbers | None = None,
-        damping: float | str | None = None,
-        samples: Samples | str | None = None,
+        ring: Flag | None = None,
+        exchange: str | Real | Numbers | None = None,
+        dm: str | Real | Numbers | None = None,
+        anisotropy: str | Real | Numbers | None = None,
+        field: str | Real | Numbers | None = None,
+        damping: Real | str | None = None,
+        samples: Samples | Path | str | None = None,
         interpolation: str | None = None,
         let: Mapping[str, Any] | None = None,
         parameters: Mapping[str, Any] | None = None,

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from ._arrays import finite, first, into, leading, near, pair, real, series, size_of_elements, what, whole
 from ._errors import ArgumentError
 from ._groups import SO, expm, size_of
+from ._types import Real, Whole
 
 __all__ = ["U", "ComplexPoints", "Unitary", "is_unitary_name"]
 
@@ -217,7 +218,7 @@ class Unitary:
         """Return dexp_u(v) with d/dε exp(u + εv) = dexp_u(v) exp(u)."""
         return self._two(self._real.dexp, u, v, out)
 
-    def dexpinv(self, u: ArrayLike, v: ArrayLike, out: Complex | None = None, *, q: int | None = None) -> Complex:
+    def dexpinv(self, u: ArrayLike, v: ArrayLike, out: Complex | None = None, *, q: Whole | None = None) -> Complex:
         """Return the inverse of dexp_u, applied to v. With q, its series Σ_k B_k/k! ad_u^k v is cut after k = q."""
         if q is not None:
             a, b = pair("u", self._algebra("u", u), 2, "v", self._algebra("v", v), 2)
@@ -256,11 +257,11 @@ class Unitary:
         a = _adjoint(a)
         return into(a @ b - b @ a, out)
 
-    def contains(self, g: ArrayLike, tol: float = 1e-12) -> NDArray[np.bool_]:
+    def contains(self, g: ArrayLike, tol: Real = 1e-12) -> NDArray[np.bool_]:
         """Return True for each matrix with ‖g†g − 1‖ ≤ tol (Frobenius)."""
         return np.asarray(self.defect(g) <= tol)
 
-    def random(self, size: int | Sequence[int] | None = None, rng: Any = None) -> Complex:
+    def random(self, size: Whole | Sequence[Whole] | None = None, rng: Any = None) -> Complex:
         """Return random elements with Haar's measure, shape size + (n, n)."""
         generator, shape = np.random.default_rng(rng), (*leading(size), self._n, self._n)
         q, r = np.linalg.qr(generator.standard_normal(shape) + 1j * generator.standard_normal(shape))
@@ -268,6 +269,6 @@ class Unitary:
         return np.asarray(q * (d / np.abs(d))[..., None, :])
 
 
-def U(n: int) -> Unitary:
+def U(n: Whole) -> Unitary:
     """Return U(n), g†g = 1, with complex arrays."""
     return Unitary(size_of("n", n))

@@ -31,6 +31,7 @@ from ._lieflow import (
     se3_exp as exp,
     se3_log as log,
 )
+from ._types import Matrices, Real, Whole
 
 __all__ = [
     "Ad", "ad", "as_transform", "cay", "ccsk", "coad", "contains", "dcayinv", "dexp", "dexpinv", "exp", "from_transform", "hat", "log",
@@ -38,7 +39,7 @@ __all__ = [
 ]
 
 
-def _motions(name: str, g: ArrayLike) -> Array:
+def _motions(name: str, g: Matrices) -> Array:
     """Elements of SE(3), as matrices."""
     a = elements(name, g, (4, 4))
     first(name, ~contains(a, MEMBERSHIP), "a matrix that is no motion", "[R x; 0 1] with a rotation R")
@@ -50,7 +51,7 @@ def _both(name_a: str, a: ArrayLike, name_b: str, b: ArrayLike) -> tuple[Array, 
     return pair(name_a, elements(name_a, a, (6,)), 1, name_b, elements(name_b, b, (6,)), 1)
 
 
-def dexpinv(u: ArrayLike, v: ArrayLike, out: Array | None = None, *, q: int | None = None) -> Array:
+def dexpinv(u: ArrayLike, v: ArrayLike, out: Array | None = None, *, q: Whole | None = None) -> Array:
     """Return dexp_u⁻¹(v), the inverse of dexp_u, shape (..., 6); right-trivialised.
 
     With q, the series Σ_k B_k/k! ad_u^k v is cut after k = q. Errors: ArgumentError, and next to |ω| = 2πk, k ≥ 1, where
@@ -85,7 +86,7 @@ def vee(m: ArrayLike, out: Array | None = None) -> Array:
     return into(np.concatenate([so3.vee(a[..., :3, :3]), a[..., :3, 3]], axis=-1), out)
 
 
-def Ad(g: ArrayLike, u: ArrayLike, out: Array | None = None) -> Array:
+def Ad(g: Matrices, u: ArrayLike, out: Array | None = None) -> Array:
     """Return Ad_g (ω, v) = (Rω, Rv + x × Rω) of g = [R x; 0 1], shape (..., 6)."""
     a, b = pair("g", _motions("g", g), 2, "u", elements("u", u, (6,)), 1)
     omega = (a[..., :3, :3] @ b[..., :3, None])[..., 0]
@@ -111,14 +112,14 @@ def coad(u: ArrayLike, m: ArrayLike, out: Array | None = None) -> Array:
     return into(np.concatenate([mu, np.cross(b[..., 3:], a[..., :3])], axis=-1), out)
 
 
-def contains(g: ArrayLike, tol: float = 1e-12) -> NDArray[np.bool_]:
+def contains(g: Matrices, tol: Real = 1e-12) -> NDArray[np.bool_]:
     """Return True for each matrix [R x; 0 1] with R in SO(3) to tol, shape (...)."""
     a = elements("g", g, (4, 4), check=False)
     last = np.abs(a[..., 3, :] - np.array([0.0, 0.0, 0.0, 1.0])).max(-1) <= tol
     return np.asarray(so3.contains(a[..., :3, :3], tol) & last & np.isfinite(a[..., :3, 3]).all(-1))
 
 
-def random(size: int | Sequence[int] | None = None, rng: Any = None) -> Array:
+def random(size: Whole | Sequence[Whole] | None = None, rng: Any = None) -> Array:
     """Return random elements: R by Haar's measure, x normal; shape size + (4, 4)."""
     generator = np.random.default_rng(rng)
     r = so3.random(leading(size), generator)
@@ -139,7 +140,7 @@ def project(x: ArrayLike, out: Array | None = None) -> Array:
     return into(found, out)
 
 
-def as_transform(g: ArrayLike) -> Any:
+def as_transform(g: Matrices) -> Any:
     """Return SciPy's RigidTransform of matrices (..., 4, 4). It needs SciPy 1.16 or later."""
     from scipy.spatial.transform import RigidTransform  # type: ignore[import-untyped, import-not-found, unused-ignore]
 

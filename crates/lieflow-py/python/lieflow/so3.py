@@ -39,6 +39,7 @@ from ._lieflow import (
     so3_exp_on as exp_on,
     so3_log as log,
 )
+from ._types import Flag, Matrices, Real, Whole
 
 __all__ = [
     "Ad",
@@ -69,14 +70,14 @@ __all__ = [
 ]
 
 
-def _rotations(name: str, r: ArrayLike) -> Array:
+def _rotations(name: str, r: Matrices) -> Array:
     """Rotations, as matrices."""
     a = elements(name, r, (3, 3))
     first(name, ~contains(a, MEMBERSHIP), "a matrix that is no rotation", "RᵀR = 𝟙 and det R = 1")
     return a
 
 
-def dexpinv(u: ArrayLike, v: ArrayLike, out: Array | None = None, *, q: int | None = None) -> Array:
+def dexpinv(u: ArrayLike, v: ArrayLike, out: Array | None = None, *, q: Whole | None = None) -> Array:
     """Return dexp_u⁻¹(v) = v − u × v/2 + ((1 − (α/2) cot(α/2))/α²) u × (u × v), α = |u|, shape (..., 3).
 
     With q, the series Σ_k B_k/k! ad_u^k v is cut after k = q. Right-trivialised. Errors: ArgumentError, and next to
@@ -148,7 +149,7 @@ def dpade22inv(u: ArrayLike, v: ArrayLike, out: Array | None = None) -> Array:
     return into(found, out)
 
 
-def as_quaternion(r: ArrayLike, out: Array | None = None, *, scalar_first: bool) -> Array:
+def as_quaternion(r: Matrices, out: Array | None = None, *, scalar_first: Flag) -> Array:
     """Return unit quaternions (..., 4) of rotations; of q and −q the one with a real part ≥ 0.
 
     ``scalar_first`` has no default, because programs differ: True for (w, x, y, z), False for (x, y, z, w).
@@ -159,7 +160,7 @@ def as_quaternion(r: ArrayLike, out: Array | None = None, *, scalar_first: bool)
     return into(np.concatenate([np.cos(half), vector] if scalar_first else [vector, np.cos(half)], axis=-1), out)
 
 
-def from_quaternion(q: ArrayLike, out: Array | None = None, *, scalar_first: bool) -> Array:
+def from_quaternion(q: ArrayLike, out: Array | None = None, *, scalar_first: Flag) -> Array:
     """Return the rotations (..., 3, 3) of unit quaternions (..., 4). They are normalised if they are off by at most 1e-6."""
     a = elements("q", q, (4,))
     norm = np.linalg.norm(a, axis=-1, keepdims=True)
@@ -198,7 +199,7 @@ def vee(m: ArrayLike, out: Array | None = None) -> Array:
     return into(np.stack([a[..., 2, 1], a[..., 0, 2], a[..., 1, 0]], axis=-1), out)
 
 
-def Ad(r: ArrayLike, u: ArrayLike, out: Array | None = None) -> Array:
+def Ad(r: Matrices, u: ArrayLike, out: Array | None = None) -> Array:
     """Return Ad_R u = R u, shape (..., 3)."""
     a, b = pair("r", _rotations("r", r), 2, "u", elements("u", u, (3,)), 1)
     return into((a @ b[..., None])[..., 0], out)
@@ -218,7 +219,7 @@ def coad(u: ArrayLike, m: ArrayLike, out: Array | None = None) -> Array:
     return into(np.cross(b, a), out)
 
 
-def contains(r: ArrayLike, tol: float = 1e-12) -> NDArray[np.bool_]:
+def contains(r: Matrices, tol: Real = 1e-12) -> NDArray[np.bool_]:
     """Return True for each matrix with ‖RᵀR − 𝟙‖ ≤ tol (Frobenius) and det R > 0, shape (...)."""
     a = elements("r", r, (3, 3), check=False)
     with np.errstate(invalid="ignore", over="ignore"):
@@ -237,14 +238,14 @@ def project(x: ArrayLike, out: Array | None = None) -> Array:
     return into(u @ vt, out)
 
 
-def random(size: int | Sequence[int] | None = None, rng: Any = None) -> Array:
+def random(size: Whole | Sequence[Whole] | None = None, rng: Any = None) -> Array:
     """Return random rotations by Haar's measure, shape size + (3, 3). ``rng`` is as in numpy.random.default_rng."""
     q = np.random.default_rng(rng).standard_normal(leading(size) + (4,))
     w, x, y, z = np.moveaxis(q / np.linalg.norm(q, axis=-1, keepdims=True), -1, 0)
     return _of_quaternion(w, x, y, z)
 
 
-def as_rotation(r: ArrayLike) -> Any:
+def as_rotation(r: Matrices) -> Any:
     """Return SciPy's Rotation of matrices (..., 3, 3)."""
     from scipy.spatial.transform import Rotation  # type: ignore[import-untyped, import-not-found, unused-ignore]
 
