@@ -114,6 +114,9 @@ def test_fields_samples_and_parts_do_not_change():
     ):
         with pytest.raises((TypeError, ValueError, AttributeError)):
             change()
+    for array in (samples.t, samples.values, lf.Samples([0, 1], [1, 2]).values, field.parameters["b"]):
+        with pytest.raises(ValueError, match="WRITEABLE"):
+            array.flags.writeable = True
     with pytest.raises(TypeError, match="^parameters: Field does not change; make another one$"):
         field.parameters["a"] = 2.0
     starts = ((field, np.eye(3)), (rows, np.eye(2)), (of_parts, {"R": np.eye(3), "n": [0, 0]}))

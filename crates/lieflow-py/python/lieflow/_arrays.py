@@ -17,8 +17,8 @@ from ._errors import ArgumentError
 from ._types import Matrices, Whole
 
 __all__ = [
-    "MEMBERSHIP", "common", "elements", "finite", "first", "into", "kept", "leading", "name_of", "near", "number", "own", "pair", "real", "series", "size_of_elements", "together",
-    "value", "what", "whole", "wrong_out",
+    "common", "elements", "finite", "first", "into", "kept", "leading", "MEMBERSHIP", "name_of", "near", "number",
+    "own", "pair", "read_only", "real", "series", "size_of_elements", "together", "value", "what", "whole", "wrong_out",
 ]
 
 Array = NDArray[np.float64]
@@ -91,9 +91,13 @@ def real(name: str, x: Any) -> Array:
 
 def own(name: str, x: Any) -> Array:
     """Return x as an array of real numbers that nobody else can change."""
-    array = np.array(real(name, x))
+    return read_only(np.array(real(name, x)))
+
+
+def read_only(array: NDArray[Any]) -> NDArray[Any]:
+    """Return a new array so that nobody can change it. It is a view: NumPy lets the flag of an owner be set again."""
     array.flags.writeable = False
-    return array
+    return array.view()
 
 
 def number(name: str, x: Any) -> float:

@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from ._arrays import read_only
+
 __all__ = ["Constants", "Unchanging", "unchanging"]
 
 
@@ -59,7 +61,5 @@ def unchanging(x: Any, refusal: str) -> Any:
     if hasattr(x, "as_matrix"):  # SciPy's Rotation
         x = x.as_matrix()
     if hasattr(x, "__array__") and not isinstance(x, np.generic):
-        array = np.array(x)
-        array.flags.writeable = False
-        return array
+        return read_only(np.array(x))
     return copy.deepcopy(x)
