@@ -375,7 +375,8 @@ def test_matrices_in_single_precision_are_taken(pair):
     assert np.abs(group.exp(skew) - group.exp(u)).max() < 1e-7
     # The distance is relative, as in Group: ‖g†g − 1‖ = 0.21 √3 by ‖g‖² = 3.63.
     for call, words in (
-        (lambda: group.log(1.1 * group.exp(u)[0]), "g: a matrix at a relative distance of 1.0e-01 from U(3), expected a unitary matrix to 1e-06"),
+        (lambda: group.log(1.1 * group.exp(u)[0]),
+         "g: a matrix at a relative distance of 1.0e-01 from U(3), expected a unitary matrix to 1e-06"),
         (lambda: group.exp(u + 1e-3 * np.eye(N)), "u[0]: a matrix at a relative distance of "),
         (lambda: lf.SO(3).Ad(1.1 * np.eye(3), np.zeros((3, 3))), "g: a matrix at a relative distance of 1.0e-01 from SO(3), "),
     ):

@@ -11,7 +11,7 @@ from numbers import Real
 from typing import Any, TypeVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from ._errors import ArgumentError
 from ._types import Matrices, Whole

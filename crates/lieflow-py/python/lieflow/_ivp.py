@@ -9,7 +9,7 @@ from time import thread_time
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from . import _lieflow
 from ._arrays import MEMBERSHIP, Array, finite, kept, name_of, number, real, value, what, whole
