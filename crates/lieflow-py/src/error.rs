@@ -55,8 +55,7 @@ pub(crate) fn words(name: &str, error: &Error) -> (String, String, String) {
     };
     match error {
         Error::OutOfRange { arg, value, expected } => {
-            let expected = expected.replace("times[", &format!("{}[", with_times("times")));
-            (with_times(arg), Plain(value).to_string(), expected)
+            (with_times(arg), Plain(value).to_string(), expected.clone())
         }
         Error::Length { arg, found, expected } => {
             (with_times(arg), format!("length {found}"), expected.clone())

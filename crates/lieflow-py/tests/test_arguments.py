@@ -345,7 +345,7 @@ def test_a_wrong_last_row_of_a_motion_is_named():
 
 
 def test_times_of_samples_are_named():
-    with pytest.raises(lf.ArgumentError, match=r"^t\[2\]: 1, expected more than t\[1\] = 2$"):
+    with pytest.raises(lf.ArgumentError, match=r"^t\[2\]: 1, expected more than 2, the time before it$"):
         lf.Samples([0, 2, 1], [1, 2, 3])
     samples = lf.Samples([0, 1], [1, 2])
     for t, name in ((1.5, "t"), ([0.5, 1.5], "t[1]"), ([[0.5, 0.5], [1.5, 0.5]], "t[1, 0]"), (-1, "t")):
