@@ -1,7 +1,7 @@
 //! What a run is judged by: the exact end, or one that two methods agree on; and the invariants.
 
 use lieflow::catalog::MethodSpec;
-use lieflow::problems::Origin;
+use lieflow::problems::{Origin, explained_by_rounding};
 use lieflow::solve::{Status, Stops};
 use lieflow::tolerance::Rule;
 use std::sync::atomic::AtomicBool;
@@ -9,82 +9,22 @@ use std::time::Duration;
 
 use lieflow::{RunError, SaveAt, StepControl, TimeGrid};
 
+use super::reference::{Reference, Rounding, TIGHT, reference_methods};
 use super::{Candidate, Size, WorkPoint};
 use crate::error::CliError;
 use lieflow_counting::operations;
-use lieflow_figures::number::typed;
-use lieflow_model::problem::{Model, Plan, Rows as Watched, Sink, Steps};
+use lieflow_model::problem::{
+    Model, Plan, Rows as Watched, SHORT_STEPS, Sink, Steps, time_to_search,
+};
 use lieflow_model::scene::Scene;
 use lieflow_model::schema::{Component, Observable, Row, Schema, length};
 use lieflow_timing::cpu_seconds;
 
-/// Where the end comes from that errors are measured against.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Reference {
-    /// The exact solution.
-    Exact {
-        /// How far rounding moves its end. `None` if the reference is not a compared method.
-        rounding: Option<Rounding>,
-    },
-    /// A run at the finest tolerance.
-    Own {
-        /// Its method.
-        by: String,
-        /// The independent one that it is compared with.
-        beside: String,
-        /// The relative distance of the two: an estimate of the error of the reference.
-        apart: f64,
-    },
-}
-
-/// How far rounding moves the end of the exact solution when it is taken in many steps.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rounding {
-    /// The largest relative distance from the end in one step.
-    pub apart: f64,
-    /// The largest number of steps that was tried.
-    pub steps: u64,
-}
-
-impl Reference {
-    /// An estimate of the relative error of the reference.
-    pub fn error(&self) -> Option<f64> {
-        match self {
-            Reference::Exact { rounding } => rounding.map(|rounding| rounding.apart),
-            Reference::Own { apart, .. } => Some(*apart),
-        }
-    }
-
-    /// The floor: nothing can be said of smaller relative errors.
-    pub fn floor(&self) -> f64 {
-        self.error().unwrap_or_default().max(f64::EPSILON)
-    }
-
-    /// The reference of the errors, in sentences.
-    pub fn in_words(&self) -> String {
-        match self {
-            Reference::Exact { rounding: None } => {
-                "Errors are measured against the exact solution.".into()
-            }
-            Reference::Exact { rounding: Some(Rounding { apart, steps }) } => format!(
-                "Errors are measured against the exact solution. Taken in 2 to {steps} steps, the exact \
-                 solution itself moves by up to {}: smaller errors are rounding.",
-                typed(*apart, 1)
-            ),
-            Reference::Own { by, beside, apart } => format!(
-                "Errors are measured against a run of {by} at a tolerance of {TIGHT:e}. It agrees with a run of \
-                 {beside} to {}: smaller errors cannot be seen.",
-                typed(*apart, 1)
-            ),
-        }
-    }
-}
-
-/// The tolerance of a reference run.
-const TIGHT: f64 = 1e-13;
 /// Numbers of steps in which the exact motion is always taken, to see how much it rounds.
 const PARTS: [u64; 5] = [2, 3, 5, 7, 11];
 
+/// A run in short steps that ends this many errors away has found something that longer steps pass over.
+pub(crate) const PASSED_OVER: f64 = 30.0;
 /// Where runs of few steps are judged besides their end, in parts of the span. The errors of a few steps may cancel at the
 /// end of a whole number of turns.
 const WITHIN: [f64; 2] = [0.382, 0.809];
@@ -95,22 +35,6 @@ const CANCELLED: f64 = 30.0;
 /// A part that is this much smaller where it is judged than elsewhere returns to 0 there, as once in a period: its size
 /// there is rounding.
 pub(crate) const RETURNS: f64 = 1e-6;
-
-/// The methods of a reference, of different kinds: the first two that fit are taken.
-fn reference_methods() -> Vec<MethodSpec> {
-    let with = |name: &str, tableau: &str| MethodSpec {
-        tableau: Some(tableau.into()),
-        ..MethodSpec::new(name, None)
-    };
-    vec![
-        with("rkmk", "dop853"),
-        MethodSpec::new("taylor16", None),
-        MethodSpec::new("magnus8", None),
-        MethodSpec::new("gauss6", None),
-        MethodSpec::new("cf-ls5", None),
-        with("rk", "dop853"),
-    ]
-}
 
 /// A span, and how the steps of a scene are bounded in it.
 #[derive(Clone, Debug)]
@@ -168,6 +92,16 @@ pub struct Judge<'a> {
     pub reference: Reference,
     /// The flag that ends each run.
     stop: &'a AtomicBool,
+}
+
+/// A run at the tolerance of a reference.
+struct TightRun {
+    /// The last row.
+    end: Vec<f64>,
+    /// The rows at times of [`WITHIN`].
+    within: Vec<(f64, Vec<f64>)>,
+    steps: u64,
+    seconds: f64,
 }
 
 impl<'a> Judge<'a> {
@@ -230,47 +164,86 @@ impl<'a> Judge<'a> {
         Ok((Judge { state, course, schema, end, within, reference, stop }, model))
     }
 
+    /// Takes the end of two runs. If a run in short steps ends elsewhere, both passed over something short, such as a pulse.
+    /// Then the end is that of two runs in short steps.
     fn find_end(&mut self, model: &Model) -> Result<(), CliError> {
-        let t_span = self.course.t_span;
-        let control = self.course.control(TIGHT, TIGHT)?.max_steps(10_000_000)?;
-        let mut ends: Vec<(String, Vec<f64>)> = Vec::new();
-        let [t0, t1] = t_span;
-        let times = [&[t0], &times_within(t_span)[..], &[t1]].concat();
+        let (method, steps, seconds) = self.take_two_runs(model, None)?;
+        let [t0, t1] = self.course.t_span;
+        let short = (t1 - t0).abs() / SHORT_STEPS as f64;
+        if time_to_search(steps, seconds).is_none() {
+            return Ok(());
+        }
+        let Some(found) = self.tight_run(model, &method, Some(short))? else { return Ok(()) };
+        let rounding = explained_by_rounding(found.steps, 1.0);
+        if self.error(&found.end) > PASSED_OVER * self.reference.floor().max(rounding) {
+            self.take_two_runs(model, Some(short))?;
+        }
+        Ok(())
+    }
+
+    /// Takes the end of two runs of different methods, in steps of at most `largest`. Returns the first method, and its
+    /// number of steps and seconds.
+    fn take_two_runs(
+        &mut self,
+        model: &Model,
+        largest: Option<f64>,
+    ) -> Result<(MethodSpec, u64, f64), CliError> {
+        let mut first: Option<(MethodSpec, TightRun)> = None;
         for method in reference_methods() {
-            let (mut rows, cancel) = (Vec::new(), Some(self.stop));
-            let steps = Steps::ByError { t_span, control: control.clone() };
-            let save = SaveAt::Times(times.clone());
-            let stops = self.course.stops_by_error.clone();
-            let plan = Plan { cancel, stops, times_by_steps: true, ..Plan::new(steps, save) };
-            let mut see = |t: f64, row: Row<'_>| rows.push((t, row.values().to_vec()));
-            match model.drive(&method, plan, &mut Watched(&mut see)) {
-                Ok(outcome) if outcome.status == Status::Cancelled => {
-                    return Err(CliError::Message("no reference solution: it was stopped".into()));
-                }
-                Ok(_) => {
-                    let (_, end) = rows.pop().unwrap_or_default();
-                    if ends.is_empty() {
-                        self.within = rows.split_off(1.min(rows.len()));
-                    }
-                    ends.push((method.label(), end));
-                }
-                Err(RunError::Setup(_)) => continue,
-                Err(error) => {
-                    return Err(CliError::Message(format!(
-                        "no reference solution: {} stopped: {error}",
-                        method.label()
-                    )));
-                }
-            }
-            if let [(by, a), (beside, b)] = &ends[..] {
-                self.end = a.clone();
-                let apart = self.error(b);
-                let (by, beside) = (by.clone(), beside.clone());
-                self.reference = Reference::Own { by, beside, apart };
-                return Ok(());
-            }
+            let Some(run) = self.tight_run(model, &method, largest)? else { continue };
+            let Some((by, taken)) = &first else {
+                first = Some((method, run));
+                continue;
+            };
+            (self.end, self.within) = (taken.end.clone(), taken.within.clone());
+            let apart = self.error(&run.end);
+            let (name, beside) = (by.label(), method.label());
+            self.reference = Reference::Own { by: name, beside, apart, largest };
+            return Ok((by.clone(), taken.steps, taken.seconds));
         }
         Err(CliError::Message("no two methods for a reference solution fit this problem".into()))
+    }
+
+    /// A run at the tolerance of a reference, in steps of at most `largest`. None if the method does not fit the problem.
+    fn tight_run(
+        &self,
+        model: &Model,
+        method: &MethodSpec,
+        largest: Option<f64>,
+    ) -> Result<Option<TightRun>, CliError> {
+        let t_span = self.course.t_span;
+        let course = Course {
+            largest: match (self.course.largest, largest) {
+                (Some(a), Some(b)) => Some(a.min(b)),
+                (a, b) => a.or(b),
+            },
+            ..self.course.clone()
+        };
+        let control = course.control(TIGHT, TIGHT)?.max_steps(10_000_000)?;
+        let [t0, t1] = t_span;
+        let times = [&[t0], &times_within(t_span)[..], &[t1]].concat();
+        let (mut rows, start) = (Vec::new(), cpu_seconds());
+        let steps = Steps::ByError { t_span, control };
+        let (cancel, stops) = (Some(self.stop), course.stops_by_error);
+        let plan =
+            Plan { cancel, stops, times_by_steps: true, ..Plan::new(steps, SaveAt::Times(times)) };
+        let mut see = |t: f64, row: Row<'_>| rows.push((t, row.values().to_vec()));
+        match model.drive(method, plan, &mut Watched(&mut see)) {
+            Ok(outcome) if outcome.status == Status::Cancelled => {
+                Err(CliError::Message("no reference solution: it was stopped".into()))
+            }
+            Ok(outcome) => {
+                let (_, end) = rows.pop().unwrap_or_default();
+                let within = rows.split_off(1.min(rows.len()));
+                let (steps, seconds) = (outcome.stats.accepted, cpu_seconds() - start);
+                Ok(Some(TightRun { end, within, steps, seconds }))
+            }
+            Err(RunError::Setup(_)) => Ok(None),
+            Err(error) => Err(CliError::Message(format!(
+                "no reference solution: {} stopped: {error}",
+                method.label()
+            ))),
+        }
     }
 
     /// How far from its end the exact motion comes in several steps, and in as many as other methods take. One

@@ -10,15 +10,17 @@ mod curve;
 mod journal;
 mod judge;
 mod kept;
+mod reference;
 
 pub use candidate::Candidate;
 pub use checks::checks;
 use curve::OFF;
 pub use curve::{Curve, Reached, WorkPoint, pareto};
 pub use journal::{JOURNAL, Journal};
-pub(crate) use judge::RETURNS;
-pub use judge::{Course, Judge, MOST_ROWS, Reference, Rounding, Rows};
+pub use judge::{Course, Judge, MOST_ROWS, Rows};
+pub(crate) use judge::{PASSED_OVER, RETURNS};
 pub use kept::Kept;
+pub use reference::{Reference, Rounding};
 
 use std::collections::VecDeque;
 use std::sync::atomic::AtomicBool;

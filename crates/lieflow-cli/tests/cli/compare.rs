@@ -229,7 +229,7 @@ fn no_advice_below_the_error_of_the_reference() {
         stop: &NEVER,
     };
     let (curves, _) = speed_against_error(&scene, &plan, effort, None, |_| Ok(())).unwrap();
-    let own = |apart| Reference::Own { by: "a".into(), beside: "b".into(), apart };
+    let own = |apart| Reference::Own { by: "a".into(), beside: "b".into(), apart, largest: None };
     for (apart, told) in [(1e-14, 4), (1e-8, 2), (1e-2, 0)] {
         let reference = own(apart);
         let choices = choices(&curves, &reference, &ADVICE, |_, _| true);
@@ -397,7 +397,9 @@ fn a_run_without_numbers_reaches_no_error() {
 fn two_methods_agree_where_the_exact_solution_is_not_asked() {
     let scene = Scene::parse("scene", SCENE).unwrap();
     let judge = Judge::by_two_runs(&scene, &["attitude"], [0.0, 2.0], &NEVER).unwrap();
-    let Reference::Own { by, beside, apart } = &judge.reference else { panic!("not exact") };
+    let Reference::Own { by, beside, apart, largest: None } = &judge.reference else {
+        panic!("not exact")
+    };
     assert_ne!(by, beside);
     assert!(*apart < 1e-11, "{apart:e}");
     assert!(judge.reference.in_words().contains("It agrees with a run of"));

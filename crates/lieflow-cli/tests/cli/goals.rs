@@ -4,11 +4,40 @@ use std::time::Duration;
 
 use crate::support::{Folder, SCENE};
 use lieflow_cli::measure::{
-    Candidate, Curve, Effort, NEVER, Plan, Reference, Rows, Size, WorkPoint, speed_against_error,
+    Candidate, Curve, Effort, Judge, NEVER, Plan, Reference, Rows, Size, WorkPoint,
+    speed_against_error,
 };
 use lieflow_cli::report::Answer;
 use lieflow_model::problem::Layer;
 use lieflow_model::scene::Scene;
+
+/// Long steps of both references pass over a pulse. The end is that of short ones then, and a step of Euler is no advice.
+#[test]
+fn the_reference_passes_over_no_pulse() {
+    let text = r#"
+[problem]
+kind = "driven-body"
+inertia = [1.0, 2.0, 2.5]
+omega_body = [0.0, 0.0, 0.1]
+torque = ["10*exp(-((t-70)/0.01)^2)", "0", "0"]
+[time]
+t_span = [0.0, 100.0]
+"#;
+    let judge_of = |text: &str| {
+        let scene = Scene::parse("scene", text).unwrap();
+        let span = scene.grid.t_span();
+        let longest = Duration::from_secs(1);
+        Judge::new(&scene, &["attitude"], span, &[], longest, &NEVER).unwrap().reference
+    };
+    let found = judge_of(text);
+    let Reference::Own { apart, largest: Some(0.05), .. } = found else { panic!("{found:?}") };
+    assert!(apart < 1e-10, "{apart:e}");
+    let told = found.in_words();
+    assert!(told.contains("in steps of at most 0.05: longer ones pass over something"), "{told}");
+    // Without the pulse long steps have the end.
+    let found = judge_of(&text.replace("0.01)^2", "10)^2"));
+    assert!(matches!(found, Reference::Own { largest: None, .. }), "{found:?}");
+}
 
 #[test]
 fn an_answer_follows_from_the_runs() {
@@ -33,7 +62,8 @@ fn an_answer_follows_from_the_runs() {
         }
     };
     let curves = [curve("taylor8", 8, 2e-6), curve("taylor10", 10, 4e-5), curve("rk4", 4, 1e-6)];
-    let reference = Reference::Own { by: "a".into(), beside: "b".into(), apart: 1e-13 };
+    let reference =
+        Reference::Own { by: "a".into(), beside: "b".into(), apart: 1e-13, largest: None };
     let answer = |error| Answer::new(&curves, &reference, error);
     let told = answer(1e-8).in_words();
     for part in [
@@ -73,7 +103,8 @@ fn who_stays_on_m_is_told_first() {
         let (label, points) = (candidate.name(), steps.map(run).to_vec());
         Curve { label, candidate, order: Some(4), stays, floor: 1e-13, points }
     };
-    let reference = Reference::Own { by: "a".into(), beside: "b".into(), apart: 1e-13 };
+    let reference =
+        Reference::Own { by: "a".into(), beside: "b".into(), apart: 1e-13, largest: None };
     let curves =
         [curve("rkmk4 exp", true, 2e-6), curve("rk4", false, 1e-6), curve("cf4", true, 4e-6)];
     let told = Answer::new(&curves, &reference, 1e-8).in_words();
@@ -95,7 +126,8 @@ fn who_stays_on_m_is_told_first() {
     let told = Answer::new(&curves[..1], &reference, 1e-8).in_words();
     assert!(told.contains("take “rkmk4 exp” in 128 steps"), "{told}");
     // A reference that is good enough is no reason to worry.
-    let reference = Reference::Own { by: "a".into(), beside: "b".into(), apart: 5e-9 };
+    let reference =
+        Reference::Own { by: "a".into(), beside: "b".into(), apart: 5e-9, largest: None };
     assert!(!reference.in_words().contains("NOT") && reference.in_words().contains("to 5e-9"));
 }
 

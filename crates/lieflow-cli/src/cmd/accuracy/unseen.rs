@@ -8,12 +8,11 @@ use lieflow_timing::cpu_seconds;
 
 use super::{Check, NO_DIGIT, OWN, Way};
 use crate::cmd::apart::Apart;
+use crate::measure::PASSED_OVER;
 use crate::output::{Accuracy, FoundBy, number, rough};
 
 /// The search for a short pulse is given up after this many times the time that it may take.
 const MISJUDGED: f64 = 3.0;
-/// A run in short steps that ends this many estimated errors of the end away has found something that two runs did not see.
-const PASSED_OVER: f64 = 30.0;
 /// Another run in half of these short steps differs by less than this part of it where it was something short.
 const RESOLVED: f64 = 1e-3;
 /// The CPU time of a run below this many seconds says little of that of another. Then a run in short steps is begun in any
