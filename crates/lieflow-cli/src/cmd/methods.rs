@@ -1,7 +1,7 @@
 //! `lieflow methods`: which method to take; methods, coordinate maps and tableaus.
 
 use lieflow::catalog::{MethodInfo, MethodSpec, Needs, Order, TABLEAUS, TableauInfo, all_methods};
-use lieflow::maps::{MAPS, MapInfo};
+use lieflow::maps::{Exp, MAPS, MapInfo};
 use lieflow::names::same;
 use lieflow::problems::{Law, Origin};
 use serde::Serialize;
@@ -420,17 +420,15 @@ fn named(name: &str) -> Result<Named, CliError> {
             && (other.tableau.is_none() || is_part(&spec.tableau, &other.tableau))
     };
     let entry = method_entry(info, fits).ok_or_else(|| nothing(String::new()))?;
-    let order = spec.tableau.as_deref().and_then(|tableau| {
+    let of_tableau = spec.tableau.as_deref().and_then(|tableau| {
         TABLEAUS.iter().find(|info| info.name == tableau).map(|info| info.order)
     });
-    match order {
-        Some(order) => Ok(Named::Method(MethodEntry {
-            order: Some(order),
-            says_order: Order::Of(order),
-            ..entry
-        })),
-        None => Ok(Named::Method(entry)),
-    }
+    let order = of_tableau.or(entry.order).map(|order| match spec.q {
+        Some(q) => order.min(Exp.truncated(q).order_kept()),
+        None => order,
+    });
+    let says_order = order.map_or(entry.says_order, Order::Of);
+    Ok(Named::Method(MethodEntry { order, says_order, ..entry }))
 }
 
 /// Everything about a tableau.
@@ -464,6 +462,9 @@ fn map_in_words(map: &MapInfo) -> String {
 /// # Errors
 /// There is no such method; the scene cannot be used; standard output cannot be written.
 pub fn run(args: &MethodsArgs) -> Result<(), CliError> {
+    if args.scene.is_none() && !args.settings.set.is_empty() {
+        return Err(CliError::Message("--set changes a scene: name it with --for".into()));
+    }
     if let Some(name) = &args.name {
         return match (named(name)?, args.json) {
             (Named::Method(entry), true) => print_json(&entry),
@@ -477,9 +478,6 @@ pub fn run(args: &MethodsArgs) -> Result<(), CliError> {
             (Named::Map(map), true) => print_json(&MapEntry::of(map)),
             (Named::Map(map), false) => print(&map_in_words(map)),
         };
-    }
-    if args.scene.is_none() && !args.settings.set.is_empty() {
-        return Err(CliError::Message("--set changes a scene: name it with --for".into()));
     }
     let scene = args.scene.as_deref().map(|scene| args.settings.open(scene)).transpose()?;
     let keep = match (&scene, &args.keep) {

@@ -185,6 +185,13 @@ fn one_method_is_told_in_full() {
     assert!(told.contains("order: 4 or 2") && told.contains("Simo 1994"), "{told}");
     let told = folder.lieflow(&["methods", "rkmk"]).ok();
     assert!(told.contains("tableaus: euler") && told.contains("maps: exp, cay"), "{told}");
+    // A series that is cut at q keeps the order q + 2, or q + 3.
+    for (name, order) in [("rkmk dop853 exp q=2", 5), ("rkmk4 q=0", 2), ("rkmk dop853 q=8", 8)] {
+        let json = folder.lieflow(&["methods", name, "--json"]).ok();
+        assert_eq!(serde_json::from_str::<Value>(&json).unwrap()["order"], order, "{name}");
+    }
+    let refused = folder.lieflow(&["methods", "rkmk", "--set", "x=1"]).refused();
+    assert!(refused.contains("--set changes a scene: name it with --for"), "{refused}");
     let json = folder.lieflow(&["methods", "mr4", "--json"]).ok();
     assert_eq!(serde_json::from_str::<Value>(&json).unwrap()["order"], 4);
     let refused = folder.lieflow(&["methods", "tailor13"]).refused();
