@@ -60,6 +60,9 @@ fn meant(error: &clap::Error) -> Option<String> {
         || BUNDLED.iter().any(|scene| scene.name == given);
     let command = Cli::command();
     let names: Vec<&str> = command.get_subcommands().map(clap::Command::get_name).collect();
+    if names.contains(&given.as_str()) {
+        return Some(format!("options come after the command: `lieflow {given} … --option`"));
+    }
     let meant = match near(given, &names).filter(|_| !is_scene) {
         Some(name) => format!("did you mean `lieflow {name}`?"),
         None if is_scene => format!("did you mean `lieflow run {}`?", quoted(given)),

@@ -97,17 +97,24 @@ fn columns_of(runs: &[Written], wanted: &[String]) -> Result<Vec<String>, CliErr
             false => Ok(all),
         };
     }
-    // A name without its number stands for all of that name, as m for m1, m2 and m3.
+    // A name without its numbers stands for all of that name: m for m1, m2 and m3, l for l1_1 to l12_12, l1 for its first row.
     let mut columns = Vec::new();
     for name in wanted.iter().map(|name| name.trim()) {
-        let is_meant = |column: &&String| {
-            let rest = column.strip_prefix(name);
-            rest.is_some_and(|rest| rest.chars().all(|c| c.is_ascii_digit()))
+        let with = |is_rest: &dyn Fn(&str) -> bool| -> Vec<String> {
+            let is_meant = |column: &&String| column.strip_prefix(name).is_some_and(is_rest);
+            all.iter().filter(is_meant).cloned().collect()
         };
-        let mut found: Vec<String> = match all.iter().find(|column| *column == name) {
-            Some(column) => vec![column.clone()],
-            None => all.iter().filter(is_meant).cloned().collect(),
+        let is_number = |text: &str| text.chars().all(|c| c.is_ascii_digit());
+        let is_entry = |rest: &str| {
+            rest.split_once('_').map_or([rest, ""], |(i, j)| [i, j]).into_iter().all(is_number)
         };
+        // l1 is a row before it is a part of the name of row 11.
+        let names = [
+            with(&str::is_empty),
+            with(&|rest| rest.strip_prefix('_').is_some_and(is_number)),
+            with(&is_entry),
+        ];
+        let mut found = names.into_iter().find(|found| !found.is_empty()).unwrap_or_default();
         if found.is_empty() {
             let known: Vec<&str> = all.iter().map(String::as_str).collect();
             let help = help_for(name, &known);
@@ -179,11 +186,16 @@ fn read(folder: &Path, name: String, args: &PlotArgs) -> Result<Written, CliErro
         return Err(CliError::Message(message));
     };
     let file = File::open(path).map_err(CliError::io("read", path))?;
-    let mut lines = BufReader::new(file).lines();
+    let mut file = BufReader::new(file);
+    let mut next = || -> Result<Option<String>, CliError> {
+        let mut line = String::new();
+        let length = file.read_line(&mut line).map_err(CliError::io("read", path))?;
+        Ok((length > 0).then_some(line))
+    };
     let wrong =
         |line: usize, what: &str| CliError::Message(format!("{}:{line}: {what}", path.display()));
-    let header = lines.next().transpose().map_err(CliError::io("read", path))?.unwrap_or_default();
-    let mut columns = header.split(',').map(|name| name.trim_matches('"').to_string());
+    let header = next()?.unwrap_or_default();
+    let mut columns = header.trim_end().split(',').map(|name| name.trim_matches('"').to_string());
     if columns.next().as_deref() != Some(TIME) {
         return Err(wrong(1, "expected the names of columns, t first"));
     }
@@ -191,16 +203,22 @@ fn read(folder: &Path, name: String, args: &PlotArgs) -> Result<Written, CliErro
     let (mut rows, mut values, mut last) = (Sample::default(), Vec::new(), f64::NAN);
     let within =
         |t: f64| args.from.is_none_or(|from| t >= from) && args.to.is_none_or(|to| t <= to);
-    for (i, line) in lines.enumerate() {
-        let line = line.map_err(CliError::io("read", path))?;
+    let Stated { units, completed } = stated(folder)?;
+    let mut number = 1;
+    while let Some(line) = next()? {
+        number += 1;
+        // A run that was killed may have written a part of its last row.
+        if !completed && !line.ends_with('\n') {
+            break;
+        }
         values.clear();
         for value in line.split(',') {
             let value = value.trim().parse::<f64>();
-            values.push(value.map_err(|_| wrong(i + 2, "expected numbers between commas"))?);
+            values.push(value.map_err(|_| wrong(number, "expected numbers between commas"))?);
         }
         if values.len() != columns.len() + 1 {
             let what = format!("{} numbers, expected {}", values.len(), columns.len() + 1);
-            return Err(wrong(i + 2, &what));
+            return Err(wrong(number, &what));
         }
         last = values[0];
         if within(last) {
@@ -210,7 +228,6 @@ fn read(folder: &Path, name: String, args: &PlotArgs) -> Result<Written, CliErro
     if rows.seen() == 0 {
         return Err(CliError::Message(format!("{} has no rows at these times", path.display())));
     }
-    let Stated { units, completed } = stated(folder)?;
     if !completed {
         eprintln!("note: `{name}` is a run that is not complete: its rows end at t = {last}");
     }

@@ -27,6 +27,10 @@ fn a_word_that_is_no_command_is_a_scene_or_a_command() {
         let message = folder.lieflow(&[word]).refused();
         assert!(message.contains(&format!("there is no command `{word}`\n{meant}")), "{message}");
     }
+    for args in [&["--out", "d", "run", "body"][..], &["--quick", "run", "body"]] {
+        let message = folder.lieflow(args).refused();
+        assert!(message.contains("options come after the command: `lieflow run"), "{message}");
+    }
     // Other mistakes are told as before.
     let message = folder.lieflow(&["run"]).refused();
     assert!(message.contains("<SCENE>"), "{message}");

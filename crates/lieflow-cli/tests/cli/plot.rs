@@ -149,6 +149,33 @@ fn a_run_that_is_not_complete_is_told() {
     let run = folder.lieflow(&["plot", "part"]);
     let expected = "note: `part` is a run that is not complete: its rows end at t = ";
     assert!(run.code == Some(0) && run.err.contains(expected), "{run:?}");
+    // A run that was killed may have written a part of its last row, or a part of its last number.
+    for rest in ["40,", "40,1,2,3.5"] {
+        folder
+            .write("killed/trajectory.partial.csv", &format!("t,a,b,c\n0,1,2,3\n20,1,2,4\n{rest}"));
+        let run = folder.lieflow(&["plot", "killed"]);
+        let expected = "note: `killed` is a run that is not complete: its rows end at t = 20";
+        assert!(run.code == Some(0) && run.err.contains(expected), "{run:?}");
+    }
+    folder.write("killed/trajectory.partial.csv", "t,a\n0,1\n20\n40,2\n");
+    let refused = folder.lieflow(&["plot", "killed"]).refused();
+    assert!(refused.contains("trajectory.partial.csv:3: 1 numbers, expected 2"), "{refused}");
+}
+
+/// A name stands for all of its numbers, also where a matrix has more than nine rows; `l1` is its first row.
+#[test]
+fn entries_of_large_matrices_are_drawn_by_their_name() {
+    let folder = Folder::new();
+    let names: Vec<String> =
+        (1..=11).flat_map(|i| (1..=i).map(move |j| format!("l{i}_{j}"))).collect();
+    let row = |t: f64| (0..names.len()).map(|k| format!(",{}", t + k as f64)).collect::<String>();
+    let text = format!("t,{},l1x\n0{},0\n1{},0\n", names.join(","), row(0.0), row(1.0));
+    folder.write("toda/trajectory.csv", &text);
+    for (name, count) in [("l", 66), ("l1", 1), ("l11", 11), ("l1_", 1), ("l11_1", 1), ("l1x", 1)] {
+        let told = folder.lieflow(&["plot", "toda", "--columns", name, "--out", "out"]).ok();
+        let many = if count == 1 { "" } else { "s" };
+        assert!(told.starts_with(&format!("{count} column{many} of 1 run")), "{name}: {told}");
+    }
 }
 
 /// Two thousand turns are a band, as high as they are from the start to the end; what is less than rounding is straight.
