@@ -110,7 +110,7 @@ def test_points_do_not_depend_on_the_parts_of_a_call():
         rows = at(times)
         assert np.array_equal(rows[2, 7], at(times[2, 7])) and np.array_equal(rows[:, ::50], at(times[:, ::50]))
     times[2, 30] = 101.0
-    for f, name in ((sol, "t"), (samples, r"t\[2030\]")):
+    for f, name in ((sol, "t"), (samples, r"t\[2, 30\]")):
         with pytest.raises(lf.ArgumentError, match=f"^{name}: 101, expected a time"):
             f(times)
 
