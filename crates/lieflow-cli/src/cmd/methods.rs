@@ -156,6 +156,8 @@ enum Serves {
     QuadraticInvariants,
     /// Those on the layer of matrices of any size, where cay costs less than exp.
     Matrices,
+    /// Those on the layer of closed formulas, where a bracket costs less than exp.
+    Closed,
 }
 
 const fn take(method: &'static str, problems: &'static str) -> Take {
@@ -173,6 +175,11 @@ const ADVICE: &[Advice] = &[
         because: "a high order needs few steps",
         take: &[
             take("taylor16", "free bodies, tops, pendulums"),
+            Take {
+                method: "magnus8",
+                problems: "spins in a field of time",
+                serves: Serves::Closed,
+            },
             take("cfm6-5", "y' = A(t) y"),
             on_matrices("rkmk dop853 cay"),
             take("rkmk dop853", "all others"),
@@ -259,6 +266,7 @@ fn advice(wanted: Wanted<'_>, typed: &str) -> Result<String, CliError> {
                 Serves::Fitting => true,
                 Serves::QuadraticInvariants => quadratic,
                 Serves::Matrices => scene.is_some_and(|scene| scene.layer == Layer::General),
+                Serves::Closed => scene.is_some_and(|scene| scene.layer == Layer::Closed),
             };
             let take = match &model {
                 None if problems.is_empty() => (*method).to_string(),

@@ -32,6 +32,7 @@ fn the_advice_takes_few_evaluations_or_operations() {
     const RKMK: &[&str] = &["rkmk4 exp", "rkmk4 cay", "rkmk dopri5 exp", "rkmk dop853 exp", "cf4"];
     const BODY: &[&str] = &["rkmk4 cay", "rkmk dopri5 exp", "rkmk dop853 exp", "taylor5"];
     const LINEAR: &[&str] = &["magnus4", "magnus6", "cfm4-2", "rkmk4 exp", "rkmk dop853 exp"];
+    const SPIN: &[&str] = &["magnus4", "magnus6", "cfm4-2", "cfm6-5", "rkmk dop853 exp"];
     let folder = Folder::new();
     for (scene, count, most, rivals) in [
         ("asymmetric-top", "operations", 1.5, BODY),
@@ -40,6 +41,7 @@ fn the_advice_takes_few_evaluations_or_operations() {
         ("spin-wave", "evaluations", 1.25, RKMK),
         ("toda-lattice", "operations", 1.25, RKMK),
         ("sorting", "operations", 1.25, RKMK),
+        ("rotating-field", "operations", 2.0, SPIN),
         ("stirap", "operations", 2.0, LINEAR),
         ("coupled-oscillators", "operations", 2.0, LINEAR),
     ] {

@@ -140,6 +140,7 @@ fn methods_are_recommended_before_they_are_listed() {
             &["cfm6-5", "cfm4-2", "magnus6", "rkmk-gauss4-symmetric"],
             &["taylor", "dmv8", "exact"],
         ),
+        ("rotating-field", &["magnus8", "cfm4-2", "magnus6"], &["cfm6-5", "taylor", "dmv8"]),
         ("toda-lattice", &["rkmk dop853 cay", "rkmk dopri5 cay"], &["taylor", "magnus", "dmv8"]),
         ("damped-satellite", &["rkmk dopri5"], &["cay", "taylor", "magnus", "dmv8"]),
         ("lagrange-top", &["taylor16", "gauss4"], &["magnus", "dmv8", "energy-casimir"]),
