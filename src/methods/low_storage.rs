@@ -1,4 +1,4 @@
-//! Commutator-free methods in low storage: one element of 𝔤 and one point for any number of stages.
+//! Commutator-free methods in low storage: four elements of 𝔤 and two points for any number of stages.
 //!
 //! For i = 1, …, s: T ← A_i T + h f(t + C_i h, Y); Y ← exp(B_i T) Y. Every Runge–Kutta method of
 //! Williamson's 2N form has its full order in this way (A. Bazavov, Commutator-free Lie group methods with

@@ -8,7 +8,7 @@ use super::{finite, finite_matrix, rodrigues, rodrigues_on};
 use crate::error::StepError;
 use crate::scalar::Trig;
 
-/// Above this coefficient dexp⁻¹ is singular: the condition number there exceeds 1e12.
+/// Above this coefficient dexp⁻¹ is singular: |u| is within about 1e-12/|u| of 2πk.
 const COEFFICIENT_MAX: f64 = 1e12;
 
 impl<S: Trig> Angle<S> {
@@ -75,8 +75,8 @@ pub fn dexp_matrix<S: Trig>(u: &Vector3<S>) -> Result<Matrix3<S>, StepError> {
 /// dexp_u⁻¹(v) = v − ½ u×v + ((1−(α/2)cot(α/2))/α²) u×(u×v), equation (16).
 ///
 /// # Errors
-/// As [`exp`]; [`StepError::OutsideChart`] next to |u| = 2πk, k ≥ 1, where the condition number
-/// exceeds 1e12; [`StepError::NotFinite`] when the result is not finite.
+/// As [`exp`]; [`StepError::OutsideChart`] next to |u| = 2πk, k ≥ 1, within about 1e-12/|u|; [`StepError::NotFinite`] when the
+/// result is not finite.
 #[inline]
 pub fn dexpinv<S: Trig>(u: &Vector3<S>, v: &Vector3<S>) -> Result<Vector3<S>, StepError> {
     let angle = Angle::of(u);

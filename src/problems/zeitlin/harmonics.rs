@@ -144,7 +144,7 @@ impl Zeitlin<Sphere> {
     }
 
     /// The vorticity on an equirectangular grid: row i at the latitude 90° − (i + ½)·180°/rows, column
-    /// j at the longitude −180° + (j + ½)·360°/cols. Allocates; O(rows·cols·N).
+    /// j at the longitude −180° + (j + ½)·360°/cols. Allocates; O(N³ + rows·N·(N + cols)).
     pub fn on_grid(&self, w: &ComplexMatrix, rows: usize, cols: usize) -> Mat<f64> {
         let n = self.n();
         let omega = self.coefficients(w, n);
