@@ -372,6 +372,18 @@ fn samples_beside_a_scene() {
     for (samples, place, what) in [
         ("t,w\n0,1\n1.5,2\n", 10, "t_span = [0, 2], and the samples span 0 to 1.5"),
         ("t,w\n0,1\n2,x\n", 5, "rate.csv, line 3: column w: found `x`, expected a finite number"),
+        // All wrong lines at once.
+        (
+            "t,w\n0,1\n1,x\n\n1,2,3\n-1,2\n2,1\n",
+            5,
+            "rate.csv, line 3: column w: found `x`, expected a finite number; line 5: found 3 columns, expected 2; \
+             line 6: column t: found `-1`, expected more than 0 of the row before\n",
+        ),
+        (
+            "t,w\n0,x\n0,x\n0,x\n0,x\n0,x\n0,x\n0,x\n",
+            5,
+            "line 6: column w: found `x`, expected a finite number; and 2 lines more\n",
+        ),
     ] {
         folder.write("data/rate.csv", samples);
         let message = run().refused();

@@ -39,6 +39,35 @@ pub(super) struct Table {
     pub(super) samples: Samples,
 }
 
+/// So many wrong lines of a file are told.
+const LINES_MOST: usize = 5;
+
+/// The numbers of a line, after a row with the time `last`.
+///
+/// # Errors
+/// What is wrong with the line, in words.
+fn row(line: &str, columns: &[String], last: Option<f64>) -> Result<Vec<f64>, String> {
+    let found = line.split(',').count();
+    if found != columns.len() {
+        return Err(format!("found {}, expected {}", amount(found, "columns"), columns.len()));
+    }
+    let wrong = |field: &str, name: &str, expected: String| {
+        format!("column {name}: found `{}`, expected {expected}", field.trim())
+    };
+    let number = |(field, name): (&str, &String)| {
+        let x = field.trim().parse().ok().filter(|x: &f64| x.is_finite());
+        x.ok_or_else(|| wrong(field, name, "a finite number".into()))
+    };
+    let row: Vec<f64> = line.split(',').zip(columns).map(number).collect::<Result<_, _>>()?;
+    match last {
+        Some(last) if row[0] <= last => {
+            let time = line.split(',').next().unwrap_or_default();
+            Err(wrong(time, &columns[0], format!("more than {last} of the row before")))
+        }
+        _ => Ok(row),
+    }
+}
+
 impl Table {
     /// # Errors
     /// A refusal of `samples` that says at which line of the file.
@@ -46,40 +75,29 @@ impl Table {
         SamplesFile(file, text): SamplesFile,
         interpolation: Interpolation,
     ) -> Result<Table, Refusal> {
-        let refused = |line: usize, message: String| {
-            Refusal::at(KEY, format!("{file}, line {line}: {message}"))
-        };
         let lines = text.trim_start_matches('\u{feff}').lines().map(str::trim).zip(1..);
         let mut lines = lines.filter(|(line, _)| !line.is_empty() && !line.starts_with('#'));
         let (header, first) = lines.next().unwrap_or(("", 1));
         let columns: Vec<String> = header.split(',').map(|name| name.trim().into()).collect();
         if columns[0] != "t" || columns.len() < 2 {
             let message = format!("found `{header}`, expected the names of columns, `t` first");
-            return Err(refused(first, message));
+            return Err(Refusal::at(KEY, format!("{file}, line {first}: {message}")));
         }
+        let mut wrong = Vec::new();
         let mut values = vec![Vec::new(); columns.len()];
         for (line, place) in lines {
-            let found = line.split(',').count();
-            if found != columns.len() {
-                let message =
-                    format!("found {}, expected {}", amount(found, "columns"), columns.len());
-                return Err(refused(place, message));
+            match row(line, &columns, values[0].last().copied()) {
+                Ok(row) => values.iter_mut().zip(row).for_each(|(values, x)| values.push(x)),
+                Err(message) => wrong.push(format!("line {place}: {message}")),
             }
-            let fields = line.split(',').zip(&columns).zip(&mut values);
-            for (place_in_row, ((field, name), values)) in fields.enumerate() {
-                let x = field.trim().parse().ok().filter(|x: &f64| x.is_finite());
-                let expected = |what: String| {
-                    let found = format!("column {name}: found `{}`", field.trim());
-                    refused(place, format!("{found}, expected {what}"))
-                };
-                let x = x.ok_or_else(|| expected("a finite number".into()))?;
-                if let (Some(&last), 0) = (values.last(), place_in_row)
-                    && x <= last
-                {
-                    return Err(expected(format!("more than {last} of the row before")));
-                }
-                values.push(x);
-            }
+        }
+        if !wrong.is_empty() {
+            let more = match wrong.len().saturating_sub(LINES_MOST) {
+                0 => String::new(),
+                more => format!("; and {} more", amount(more, "lines")),
+            };
+            wrong.truncate(LINES_MOST);
+            return Err(Refusal::at(KEY, format!("{file}, {}{more}", wrong.join("; "))));
         }
         let samples = Samples::new(&values[0], &values[1..], interpolation).map_err(|error| {
             let message = match error {
