@@ -14,6 +14,7 @@
 use faer::Mat;
 use lieflow::Error;
 use lieflow::dense::largest_entry;
+use lieflow::error::Plain;
 use lieflow::groups::MatrixGroup;
 use lieflow::names::plain;
 use lieflow::scalar::{Ops, tally};
@@ -207,7 +208,7 @@ fn skew(x: &mut Mat<f64>, p: usize) {
     tally(|| Ops::muladds(n * (n + 1) / 2));
     for (i, j) in (0..n).flat_map(|i| (0..=i).map(move |j| (i, j))) {
         let sign = if (i < p) == (j < p) { 1.0 } else { -1.0 };
-        let half = 0.5 * (x[(i, j)] - sign * x[(j, i)]);
+        let half = 0.5 * x[(i, j)] - sign * (0.5 * x[(j, i)]);
         (x[(i, j)], x[(j, i)]) = (half, -sign * half);
     }
 }
@@ -259,21 +260,24 @@ pub(super) fn miss(algebra: Algebra, key: &str, x: &Mat<f64>, tolerance: f64) ->
     let why = match algebra {
         Algebra::Gl | Algebra::Sl => {
             let trace: f64 = (0..n).map(|i| x[(i, i)]).sum();
-            format!("the sum of its diagonal is {trace}, expected 0")
+            format!("the sum of its diagonal is {}, expected 0", Plain(&trace))
         }
         Algebra::Su if i >= n && i - n == j => {
             let trace: f64 = (0..n).map(|i| x[(n + i, i)]).sum();
-            format!("the sum of the imaginary parts of its diagonal is {trace}, expected 0")
+            format!(
+                "the sum of the imaginary parts of its diagonal is {}, expected 0",
+                Plain(&trace)
+            )
         }
-        _ if first == second => format!("{} is {}, expected 0", name(first), x[first]),
+        _ if first == second => format!("{} is {}, expected 0", name(first), Plain(&x[first])),
         _ => {
             let sign = if factor < 0.0 { "-" } else { "" };
             format!(
                 "{} is {} and {} is {}, expected {} = {sign}{}",
                 name(first),
-                x[first],
+                Plain(&x[first]),
                 name(second),
-                x[second],
+                Plain(&x[second]),
                 name(second),
                 name(first)
             )

@@ -244,6 +244,11 @@ fn equations_that_are_none_are_refused_at_their_line() {
         ),
         ("group = \"sl\"\nfield = [[\"1\", \"1\"], [\"1\", \"0\"]]", 5, &["is not in sl(2)"]),
         (
+            "group = \"so\"\nfield = [[\"0\", \"1e308\"], [\"1.7e308\", \"0\"]]",
+            5,
+            &["field[1,2] is 1e308 and field[2,1] is 1.7e308, expected field[2,1] = -field[1,2]"],
+        ),
+        (
             "group = \"so\"\nfield = [[\"0\", \"1/t\"], [\"-1/t\", \"0\"]]",
             5,
             &["field[1,2] is inf at the start"],
