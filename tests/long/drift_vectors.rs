@@ -306,6 +306,39 @@ fn vectors_keep_the_form_of_their_group() {
     }
 }
 
+/// The lengths and angles of several columns, and their products under SO(3,1), where every step is the same matrix.
+#[test]
+fn columns_keep_their_products() {
+    let field = |last: f64| {
+        faer::mat![
+            [0.0, 1.1, 0.3, last * 0.3],
+            [-1.1, 0.0, 0.7, last * 0.7],
+            [-0.3, -0.7, 0.0, 0.0],
+            [0.3, 0.7, 0.0, 0.0],
+        ]
+    };
+    let start = faer::mat![[1.0, 0.3, 0.4], [0.2, 1.0, 0.1], [0.0, 0.5, 2.0], [0.3, 0.2, -0.6]];
+    for (group, last) in [(MatrixGroup::so(4), -1.0), (MatrixGroup::indefinite(3, 1), 1.0)] {
+        let (group, field) = (group.expect("a group"), field(last));
+        let m = group.m().expect("a form");
+        let products = |x: &Mat<f64>| x.transpose() * &m * x;
+        let turn = Flow::of_time(group.clone(), Linear, |_: f64, v: &mut AlgebraMatrix| {
+            v.copy_from(&field);
+        });
+        let largest = Cell::new(0.0f64);
+        let of = |x: &Mat<f64>| {
+            largest.set(largest.get().max(x.squared_norm_l2()));
+            1.0 + (products(x) - products(&start)).norm_max() / largest.get()
+        };
+        let found = [
+            drift(&turn, &Rkmk::new(RK4, Exp), &start, of),
+            drift(&turn, &Rkmk::new(RK4, Cay), &start, of),
+        ];
+        println!("{}: {found:?}", group.name());
+        assert!(found.iter().all(|x| *x < 3.0 * HELD), "{}: {found:?}", group.name());
+    }
+}
+
 /// A vector goes back to the nearest one with its xᵀMx, whatever M is, and stays where rounding would move it farther.
 #[test]
 fn the_nearest_vector_with_the_same_form() {

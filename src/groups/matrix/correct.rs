@@ -50,40 +50,53 @@ pub(crate) fn correct_length<const N: usize>(
     missing.abs()
 }
 
-/// x ← x + ½Sx(q(from) − q(x))/|Sx|² with q(x) = xᵀMx = xᵀSx and S = (M + Mᵀ)/2: to first order the nearest point with the q
-/// of `from`. Returns |q(from) − q(x)|/(|x||Sx|). It is [`LieGroup::correct_vector`](crate::LieGroup::correct_vector) of one
-/// vector.
+/// Corrects two columns x and y, or one twice, that rounding moved off xᵀMy of `from`: with S = (M + Mᵀ)/2 and μ the missing
+/// part over |Sx|² + |Sy|², x ← x + μSy and y ← y + μSx. To first order they are the nearest ones. Returns the missing part,
+/// relative to |x||Sy|. It is [`LieGroup::correct_vector`](crate::LieGroup::correct_vector) of these columns. Without M it
+/// is 𝟙.
 ///
-/// x stays as it is where the rounding of q moves it by more than a step does: where |Sx| is far below ‖S‖|x|.
-pub(super) fn correct_form(m: &Mat<f64>, from: ColRef<'_, f64>, mut x: ColMut<'_, f64>) -> f64 {
-    let n = m.nrows();
-    // (Sx)_i, and the same of moduli.
-    let row = |x: ColRef<'_, f64>, i: usize| {
-        let terms = (0..n).map(|j| 0.5 * (m[(i, j)] + m[(j, i)]) * x[j]);
-        terms.fold((0.0, 0.0), |(sum, size), term| (sum + term, size + term.abs()))
+/// They stay as they are where the rounding of xᵀMy moves them by more than a step does: where |Sy| is far below ‖S‖|y|.
+pub(crate) fn correct_product(
+    m: Option<&Mat<f64>>,
+    from: &Mat<f64>,
+    x: &mut Mat<f64>,
+    [i, j]: [usize; 2],
+) -> f64 {
+    let n = x.nrows();
+    // (Sx)_r of a column, and the same of moduli.
+    let row = |x: ColRef<'_, f64>, r: usize| match m {
+        None => (x[r], x[r].abs()),
+        Some(m) => (0..n).fold((0.0, 0.0), |(sum, size), k| {
+            let term = 0.5 * (m[(r, k)] + m[(k, r)]) * x[k];
+            (sum + term, size + term.abs())
+        }),
     };
-    let form = |x: ColRef<'_, f64>| (0..n).map(|i| row(x, i).0 * x[i]).sum::<f64>();
-    let (mut square, mut length, mut size) = (0.0, 0.0, 0.0);
-    for i in 0..n {
-        let (along, most) = row(x.as_ref(), i);
-        square += along * along;
-        length += x[i] * x[i];
-        size += most * x[i].abs();
+    let product = |x: &Mat<f64>| (0..n).map(|r| x[(r, i)] * row(x.col(j), r).0).sum::<f64>();
+    let (mut squares, mut lengths, mut size) = ([0.0; 2], [0.0; 2], 0.0);
+    for r in 0..n {
+        let [(first, _), (second, most)] = [i, j].map(|column| row(x.col(column), r));
+        squares = [squares[0] + first * first, squares[1] + second * second];
+        lengths = [lengths[0] + x[(r, i)] * x[(r, i)], lengths[1] + x[(r, j)] * x[(r, j)]];
+        size += most * x[(r, i)].abs();
     }
-    if length.is_nan() {
+    if lengths.iter().any(|x| x.is_nan()) {
         return f64::NAN;
     }
-    if !(in_range(square) && in_range(length)) {
+    if !squares.iter().chain(&lengths).all(|x| in_range(*x)) {
         return 0.0;
     }
-    let missing = form(from) - form(x.as_ref());
-    let unit = length.sqrt() * square.sqrt();
+    let missing = product(from) - product(x);
+    let unit = lengths[0].sqrt() * squares[1].sqrt();
     let residual = missing.abs() / unit;
     if residual < RESIDUAL_MAX && f64::EPSILON * size <= LARGE * unit {
+        let mu = missing / (squares[0] + squares[1]);
         // Each row sees those before it moved: a change of second order.
-        for i in 0..n {
-            let along = row(x.as_ref(), i).0;
-            x[i] += 0.5 * missing / square * along;
+        for r in 0..n {
+            let [along_i, along_j] = [i, j].map(|column| row(x.col(column), r).0);
+            x[(r, i)] += mu * along_j;
+            if i != j {
+                x[(r, j)] += mu * along_i;
+            }
         }
     }
     residual

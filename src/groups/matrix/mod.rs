@@ -15,8 +15,8 @@ use faer::{Mat, MatRef};
 
 pub(crate) use check::finite;
 use correct::Cosquare;
-use correct::correct_form;
 pub(crate) use correct::correct_length;
+use correct::correct_product;
 pub use element::{AlgebraMatrix, GroupMatrix};
 use parts::{Symmetry, inverse_of, symmetry, without_rounding};
 use project::Projector;
@@ -362,15 +362,23 @@ impl LieGroup for MatrixGroup {
     fn check_vector(&self, x: &Mat<f64>) -> Result<(), Error> {
         self.rows_fit("y", x, x.ncols())
     }
-    /// Each column keeps its length on SO(n), and xᵀMx on G_M.
+    /// xᵀMx of the columns keeps its entries: on SO(n) their lengths and angles.
     fn correct_vector(&self, from: &Mat<f64>, x: &mut Mat<f64>) -> Option<f64> {
-        let column = |j: usize| match &self.form {
-            Form::Identity => Some(correct_length([from.col(j)], [x.as_mut().col_mut(j)])),
-            Form::Bilinear { m, .. } => Some(correct_form(m, from.col(j), x.as_mut().col_mut(j))),
-            // xᵀJx = 0 of any x.
-            Form::Free | Form::Symplectic => None,
+        let m = match &self.form {
+            Form::Identity => None,
+            Form::Bilinear { m, .. } => Some(m),
+            // The entries of xᵀJx are not corrected; one column has 0.
+            Form::Free | Form::Symplectic => return None,
         };
-        (0..from.ncols()).map(column).try_fold(0.0, |worst, found| Some(larger(worst, found?)))
+        let mut worst = 0.0;
+        for (i, j) in (0..x.ncols()).flat_map(|j| (0..=j).map(move |i| (i, j))) {
+            let found = match m {
+                None if i == j => correct_length([from.col(j)], [x.as_mut().col_mut(j)]),
+                _ => correct_product(m, from, x, [i, j]),
+            };
+            worst = larger(worst, found);
+        }
+        Some(worst)
     }
     fn residual_size(&self, g: &GroupMatrix) -> f64 {
         self.residual_size_of(g)
