@@ -214,6 +214,8 @@ pub trait LieGroup: LieAlgebra {
     ///
     /// On SO(3) it is x ← x + ½x(|from|² − |x|²)/|from|². Returns the residual ||x|²/|from|² − 1| before the
     /// correction. The default does nothing and returns `None`.
+    /// On [`MatrixGroup`] with a form M it is the nearest x with the same xᵀMx, to first order: for k
+    /// columns O(k²n), with a general M O(k²n²).
     ///
     /// x is not changed if its residual is [`RESIDUAL_MAX`] or more, or if |from|² overflows or underflows.
     #[inline]
