@@ -8,6 +8,7 @@ use super::events::{Events, Zero};
 use super::grid::SaveAt;
 use super::output::{AnyOutput, Keeps, Slot};
 use super::points::AnyPoints;
+use super::search::A_LITTLE_LATER;
 use super::solution::{Next, Status};
 use super::stats::RunError;
 use super::stops::Stop;
@@ -371,11 +372,37 @@ impl Drive<'_> {
         found.iter().take_while(|zero| zero.t == t || (zero.t - t).abs() <= rounding).count()
     }
 
+    /// The number of zeros that come next and are handled at t: those at t and, if one of them changes the state, those of
+    /// functions that are rounding at t. After the change their values would tell nothing.
+    fn zeros_with(&mut self, output: &mut dyn AnyOutput, t: f64) -> Result<usize, RunError> {
+        let mut count = self.zeros_at(t);
+        let all = &self.events.all;
+        let next = self.events.found.get(self.zeros_done..).unwrap_or_default();
+        if count == next.len() || !next[..count].iter().any(|zero| all[zero.event].changes) {
+            return Ok(count);
+        }
+        self.look_at(output, t, false)?;
+        let near = A_LITTLE_LATER * self.times.last.h.abs();
+        while let Some((zero, at)) = self.events.found[self.zeros_done..][..=count].split_last() {
+            let is_another = at.iter().all(|other| other.event != zero.event);
+            let value = output.event(zero.event, t, Some(Slot::Shown));
+            let is_rounding = self.events.all[zero.event].is_rounding(value);
+            if !(is_another && is_rounding && (zero.t - t).abs() <= near) {
+                break;
+            }
+            count += 1;
+            if self.zeros_done + count == self.events.found.len() {
+                break;
+            }
+        }
+        Ok(count)
+    }
+
     /// Handles a zero of an event, and all others at the same time.
     fn occur(&mut self, output: &mut dyn AnyOutput, t: f64) -> Ended {
         let mut stopped = None;
         let mut acts = false;
-        let at = self.zeros_done..self.zeros_done + self.zeros_at(t);
+        let at = self.zeros_done..self.zeros_done + self.zeros_with(output, t)?;
         for zero in at.clone() {
             self.look_at(output, t, false)?;
             let Zero { event, rising, .. } = self.events.found[zero];

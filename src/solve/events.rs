@@ -191,6 +191,13 @@ impl EventRule {
         }
     }
 
+    /// True if a value of g within the last step is the rounding of those at its ends.
+    pub(super) fn is_rounding(&self, value: f64) -> bool {
+        let Seen { value: last, before, .. } = self.seen;
+        let size = before.map_or(0.0, |[start, _]| last.abs().max(start.abs()));
+        value.abs() <= 64.0 * f64::EPSILON * size
+    }
+
     /// True if the run stops at this zero.
     pub(super) fn stops(&self) -> bool {
         self.stop_after.is_some_and(|count| self.count >= count)
@@ -266,10 +273,10 @@ impl Events {
     ) -> Result<(), RunError> {
         for (index, event) in self.all.iter_mut().enumerate() {
             let value = event.finite(t, output.event(index, t, None))?;
-            let Seen { value: last, before, .. } = event.seen;
-            let size = before.map_or(0.0, |[start, _]| last.abs().max(start.abs()));
-            // Its zero was just passed, or may have been, up to rounding.
-            let anew = value.abs() <= 64.0 * f64::EPSILON * size
+            // Its zero was just passed, or may have been, up to rounding. One that comes next has not been.
+            let comes = |zero: &Zero| zero.event == index && zero.rising == (value < 0.0);
+            let is_ahead = value != 0.0 && self.found[at.end..].iter().any(comes);
+            let anew = (event.is_rounding(value) && !is_ahead)
                 || self.found[at.clone()].iter().any(|zero| zero.event == index);
             event.seen = Seen::only(value, anew);
         }

@@ -69,7 +69,7 @@ pub(super) const POINTS_MAX: u32 = 100_000;
 const HALVINGS: u32 = 5;
 
 /// The part of a step after which the sign of g is taken again.
-const A_LITTLE_LATER: f64 = 1.0 / 65536.0;
+pub(super) const A_LITTLE_LATER: f64 = 1.0 / 65536.0;
 
 /// Whether g rises or falls through zero from one value to the next.
 fn passes(before: f64, after: f64) -> Option<bool> {

@@ -4,6 +4,7 @@ use core::cell::RefCell;
 use std::f64::consts::PI;
 
 use lieflow::actions::LeftTranslation;
+use lieflow::groups::Translations;
 use lieflow::maps::{Cay, Exp};
 use lieflow::methods::commutator_free::CF43;
 use lieflow::methods::tableau::{BS3, DOP853, DOPRI5};
@@ -247,6 +248,36 @@ fn a_jump_belongs_to_what_follows() {
         ] {
             let found = forward * x(start + forward * after);
             assert!((found - expected).abs() < 2e-9, "{after}: {found}, expected {expected}");
+        }
+    }
+}
+
+/// One fall in metres and in feet: both balls bounce, though the zeros are some roundings apart and each bounce changes the
+/// state.
+#[test]
+fn bounces_at_one_moment_are_two() {
+    let (g, feet) = (9.81, 1.0 / 0.3048);
+    let fall = boxed_flow(
+        Translations::new([0.0; 4], 4),
+        LeftTranslation,
+        move |_: f64, y: &[f64; 4], v: &mut [f64; 4]| *v = [y[1], -g, y[3], -g * feet],
+    );
+    let bounce = |name: &'static str, at: usize| {
+        let event = Event::new(name, move |_, y: &[f64; 4]| y[at]).falling();
+        event.change(move |_, y| (y[at], y[at + 1]) = (0.0, -0.8 * y[at + 1]))
+    };
+    for case in 0..130 {
+        let (height, v0) =
+            (0.5 + 0.1 * f64::from(case % 26), [0.0, 1.0, -1.0, 0.5, 1.5][case as usize / 26]);
+        let end = 1.5 * (v0 + f64::sqrt(v0 * v0 + 2.0 * g * height)) / g;
+        let start = [height, v0, feet * height, feet * v0];
+        for rtol in [1e-6, 1e-10, 1e-12] {
+            let method = Rkmk::new(DOP853, Exp);
+            let solve = Solve::new(&fall, &method, [0.0, end]).tolerances(rtol, 0.0);
+            let run = solve.event(bounce("a", 0)).event(bounce("b", 2)).run(start).expect("a run");
+            let [a, b] = [0, 1].map(|event| run.times_of(event).count());
+            assert!(a > 0 && a == b, "{height} m, {v0} m/s, {rtol:e}: {a} and {b} bounces");
+            assert!((run.y[0] - run.y[2] / feet).abs() < 1e-9, "{height} m, {v0} m/s: {:?}", run.y);
         }
     }
 }
