@@ -31,6 +31,8 @@ struct Sizes {
     controller: Controller,
     /// The least and the largest size of a step that was not kept.
     found: Cell<[f64; 2]>,
+    /// The time of the first step, and the time at which it begins: after a jump its stages are a rounding later.
+    first: [f64; 2],
     stop: f64,
     /// The least and the largest size.
     limits: [f64; 2],
@@ -38,10 +40,15 @@ struct Sizes {
 
 impl Sizes {
     /// The choice of sizes up to `largest`.
-    fn new(Chooser { controller, control, .. }: &Chooser, stop: f64, largest: f64) -> Self {
+    fn new(
+        Chooser { controller, control, .. }: &Chooser,
+        first: [f64; 2],
+        stop: f64,
+        largest: f64,
+    ) -> Self {
         let found = Cell::new([f64::INFINITY, 0.0]);
         let limits = [control.min_step, largest];
-        Sizes { controller: *controller, found, stop, limits }
+        Sizes { controller: *controller, found, first, stop, limits }
     }
 
     /// Notes the size of an accepted step.
@@ -54,7 +61,8 @@ impl Sizes {
 impl Resize for Sizes {
     fn after(&self, step: Step<f64>, end: f64, ratio: f64) -> Option<f64> {
         let mut controller = self.controller;
-        let size = (end - step.t).abs();
+        let [moved, begin] = self.first;
+        let size = (end - if step.t == moved { begin } else { step.t }).abs();
         let [least, largest] = self.limits;
         let next = (size * controller.accept(ratio)).max(least);
         let is_free = next <= largest && (self.stop - end).abs() >= 2.0 * next;
@@ -129,7 +137,7 @@ impl Timeline {
             first_size = first_size.max(size);
             let step = self.step_to(end, end - self.t, jumps && end == stop);
             let Pacer::ByError(chooser) = &self.pacer else { return Ok(()) };
-            let sizes = Sizes::new(chooser, stop, self.largest_size(1.0));
+            let sizes = Sizes::new(chooser, [step.t, self.t], stop, self.largest_size(1.0));
             let streak = self.streak(chooser, (h, end), reach, &sizes);
             let reused = self.cancel.is_some().then(|| run.points().reused());
             let tried = run.attempt(step, end, &streak);

@@ -4,14 +4,19 @@
 use std::cell::Cell;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use lieflow::actions::Linear;
 use lieflow::catalog::{MethodSpec, MethodsByName};
+use lieflow::groups::So3;
 use lieflow::maps::{Cay, Exp};
+use lieflow::methods::commutator_free::CF43;
 use lieflow::methods::tableau::{BS3, DOP853, DOPRI5};
-use lieflow::methods::{Embedded, Rk, Rkmk, Taylor};
+use lieflow::methods::{CommutatorFree, Embedded, Rk, Rkmk, Taylor};
 use lieflow::nalgebra::Vector3;
 use lieflow::problems::{RigidBody, RigidBodyAttitude};
 use lieflow::solve::Status;
 use lieflow::{Event, Problem, Solution, Solve};
+
+use crate::support::boxed::boxed_flow;
 
 type V = Vector3<f64>;
 
@@ -91,6 +96,42 @@ fn a_run_has_the_same_steps_however_it_is_watched() {
     let attitude = RigidBodyAttitude::<f64>::new([1.0, 2.0, 3.0], START.into()).expect("a body");
     let one = lieflow::nalgebra::Matrix3::identity();
     same_steps("attitude", &attitude, &Rkmk::new(DOPRI5, Exp), one);
+}
+
+/// The step after a stop has its stages a rounding later, and its size is that between its ends.
+#[test]
+fn stops_have_the_same_steps_however_a_run_is_watched() {
+    for t0 in [0.0, 1e3, 1e6] {
+        let jump = t0 + 1.242_540_74;
+        let turn = boxed_flow(So3::new(), Linear, move |t: f64, x: &V, v: &mut V| {
+            *v = V::new(1.0, (t - t0).sin() * x[0], if t > jump { 1.5 } else { 0.5 });
+        });
+        let (pair, cf43) = (Rkmk::new(DOPRI5, Exp), CommutatorFree(CF43));
+        stopped(&turn, &pair, [t0, jump]);
+        stopped(&turn, &Rkmk::new(DOP853, Cay), [t0, jump]);
+        stopped(&turn, &cf43, [t0, jump]);
+    }
+}
+
+fn stopped<P, M>(problem: &P, method: &M, [t0, jump]: [f64; 2])
+where
+    P: Problem<Group = So3, Action = Linear>,
+    M: Embedded<P>,
+{
+    let t1 = t0 + 3.0;
+    for rtol in [1e-5, 1e-6, 1e-7, 1e-8, 1e-9] {
+        let solve = || Solve::new(problem, method, [t0, t1]).tolerances(rtol, 0.0).stops([jump]);
+        let free = solve().run(V::x()).expect("a run");
+        let mut single = solve().integrator(V::x()).expect("a start");
+        while !single.is_done() {
+            single.step().expect("a step");
+        }
+        let every = solve().every(1).run(V::x()).expect("a run");
+        let end = solve().times(&[t1][..]).run(V::x()).expect("a run");
+        let found = [single.stats().accepted, every.stats.accepted, end.stats.accepted];
+        assert_eq!(found, [free.stats.accepted; 3], "{t0}, {rtol:e}");
+        assert_eq!([*single.y(), every.y, end.y], [free.y; 3], "{t0}, {rtol:e}");
+    }
 }
 
 #[test]
