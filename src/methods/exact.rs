@@ -126,6 +126,16 @@ where
         }
         frame.turn(&turn.map(Real::lit));
         problem.store(&next.map(Real::lit), &frame, y);
+        // A state that is the attitude alone has m by its rounding, and of quaternions this rounding has one sign: another turn
+        // takes m to m⁺.
+        let (m, mut frame) = problem.load(y);
+        let m: Vector3<f64> = m.map(Into::into);
+        if m != next && next.amax() > 0.0 {
+            let (m, next) = (m / size, next / size);
+            let turn = (next - m).cross(&m) / m.norm_squared();
+            frame.turn(&(Matrix3::identity() + turn.cross_matrix()).map(Real::lit));
+            problem.store(&(next * size).map(Real::lit), &frame, y);
+        }
         Ok(())
     }
 }

@@ -8,11 +8,11 @@ use lieflow::maps::{Cay, Exp};
 use lieflow::methods::tableau::{DOP853, DOPRI5};
 use lieflow::methods::{ExactMotion, Method, Rk, Rkmk};
 use lieflow::problems::{
-    BodyMotion, BodyState, Exact, RigidBody, RigidBodyAttitude, RigidBodyState, SpaceTorque,
-    SphericalPendulum, TorqueBody,
+    BodyMotion, BodyState, Exact, RigidBody, RigidBodyAttitude, RigidBodyQuaternion,
+    RigidBodyState, SpaceTorque, SphericalPendulum, TorqueBody,
 };
 use lieflow::{Error, Event, RunError, Solve};
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 use crate::modes::V;
 use crate::scipy::free;
@@ -157,6 +157,38 @@ fn exact_steps_keep_their_phase() {
             println!("{inertia:?} {m:?} {steps}: {apart:.1e}");
             assert!(apart < 3e-13, "{inertia:?} {m:?} {steps}: {apart:e}");
         }
+    }
+}
+
+/// The energy of a body by its quaternion, which has the momentum by rounding alone.
+#[test]
+fn exact_steps_of_a_quaternion_keep_the_energy() {
+    for (inertia, h) in [([1.0, 1.0, 3.0], 0.7), ([1.0, 2.0, 3.0], 1.3)] {
+        let body = RigidBodyQuaternion::new(inertia, [0.4, 1.0, 2.0]).expect("a body");
+        let solve = Solve::new(&body, &ExactMotion, [0.0, h * 4e5]).steps(400_000);
+        let end = solve.run(UnitQuaternion::identity()).expect("a run").y;
+        let energy = |q| {
+            let m: V = body.momentum_body(q);
+            m.dot(&m.component_div(&V::from(inertia))) / m.norm_squared()
+        };
+        let drift = (energy(&end) / energy(&UnitQuaternion::identity()) - 1.0).abs();
+        println!("{inertia:?}: {drift:.1e}");
+        assert!(drift < 1e-12, "{inertia:?}: {drift:e}");
+    }
+}
+
+/// A step over any time stays on SO(3) and on the sphere, also where no digit of the phase is left.
+#[test]
+fn exact_steps_over_many_turns_stay_on_m() {
+    let body = RigidBodyState::new([1.0, 2.0, 3.0]).expect("a body");
+    let m = V::new(0.4, 1.0, 2.0);
+    for h in [1e10, 1e12, 1e13, 1e14, 1e15, 1e17, 1e20, 1e30] {
+        let start = BodyState { m, g: Matrix3::identity() };
+        let end = Solve::new(&body, &ExactMotion, [0.0, h]).steps(1).run(start).expect("a run").y;
+        let length = (end.m.norm() / m.norm() - 1.0).abs();
+        let defect = (end.g.tr_mul(&end.g) - Matrix3::identity()).norm();
+        assert!(length < 1e-14 && defect < 1e-14, "{h:e}: {length:e}, {defect:e}");
+        assert!((end.g * end.m - m).norm() < 1e-13, "{h:e}");
     }
 }
 
