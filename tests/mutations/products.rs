@@ -23,6 +23,12 @@ enum Fault {
     SwappedProduct,
     WrongTangent,
     WrongVelocity,
+    KeptCombination,
+    ShortCombination,
+    WrongShortcut,
+    ForgetfulShortcut,
+    MovingCorrection,
+    MovingVectors,
 }
 
 /// SO(3) × SO(3) with a fault.
@@ -57,6 +63,17 @@ impl LieAlgebra for Broken {
         self.0.bracket(u, v, out);
         if self.1 == Fault::DroppedBracket {
             out.1 = V::zeros();
+        }
+    }
+    fn combine(&self, h: f64, weights: &[f64], terms: &[(V, V)], u: &mut (V, V)) {
+        let kept = u.1;
+        self.0.combine(h, weights, terms, u);
+        match self.1 {
+            Fault::KeptCombination => u.1 += kept,
+            Fault::ShortCombination => {
+                *u = (h * weights[0] * terms[0].0, h * weights[0] * terms[0].1)
+            }
+            _ => {}
         }
     }
     fn norm(&self, u: &(V, V)) -> f64 {
@@ -103,6 +120,18 @@ impl LieGroup for Broken {
     fn defect(&self, g: &Self::Elem) -> f64 {
         self.0.defect(g)
     }
+    fn correct(&self, g: &mut Self::Elem, _: [&mut Self::Elem; 2]) -> f64 {
+        if self.1 == Fault::MovingCorrection {
+            g.1[(0, 1)] += 1e-9;
+        }
+        0.0
+    }
+    fn correct_vector(&self, _: &(V, V), x: &mut (V, V)) -> Option<f64> {
+        if self.1 == Fault::MovingVectors {
+            x.1 *= 1.0 + 1e-9;
+        }
+        Some(0.0)
+    }
 }
 
 impl Sample for Broken {
@@ -133,6 +162,27 @@ impl CoordinateMap<Broken> for Exp {
         g: &mut (Matrix3<f64>, Matrix3<f64>),
     ) -> Result<(), StepError> {
         CoordinateMap::<Whole>::psi(self, &group.0, u, at, g)
+    }
+    fn psi_on(
+        &self,
+        group: &Broken,
+        u: &(V, V),
+        at: &mut Self::At,
+        g: &mut (Matrix3<f64>, Matrix3<f64>),
+        x: &(V, V),
+        y: &mut (V, V),
+    ) -> Result<(), StepError> {
+        if group.1 == Fault::ForgetfulShortcut {
+            let mut fresh = self.at(group).expect("storage");
+            CoordinateMap::<Whole>::psi(self, &group.0, u, &mut fresh, g)?;
+        } else {
+            CoordinateMap::<Whole>::psi(self, &group.0, u, at, g)?;
+        }
+        group.apply(g, x, y);
+        if group.1 == Fault::WrongShortcut {
+            y.1 += 1e-9 * u.1;
+        }
+        Ok(())
     }
     fn dpsi_inv(
         &self,
@@ -194,5 +244,16 @@ fn the_whole_product_holds_and_each_fault_is_found() {
     assert!(!broken_laws(Fault::SwappedProduct).is_empty());
     assert!(!broken_laws(Fault::WrongTangent).is_empty());
     assert!(!broken_laws(Fault::WrongVelocity).is_empty());
+    for shortcut in [
+        Fault::KeptCombination,
+        Fault::ShortCombination,
+        Fault::WrongShortcut,
+        Fault::ForgetfulShortcut,
+        Fault::MovingCorrection,
+        Fault::MovingVectors,
+    ] {
+        let found = broken_laws(shortcut);
+        assert!(found.len() == 1 && found[0].starts_with("shortcuts"), "{shortcut:?}: {found:?}");
+    }
     assert!(two_spins(Fault::SwappedAction) > 0.1);
 }
