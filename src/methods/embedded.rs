@@ -20,6 +20,10 @@ use crate::space::{Gap, Metric};
 use crate::tolerance::{Rule, Scales, Tolerance, ratio};
 
 /// A method whose steps have an error estimate. [`Facts`](super::Facts) has the order of the estimate and its cost.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` has no error estimate for `{P}`",
+    note = "give a step size by `.dt(h)` or `.steps(n)`, wrap the method in `Doubling(method)`, or take a pair such as `Rkmk::new(DOPRI5, Exp)`"
+)]
 pub trait Embedded<P: Problem>: Method<P> {
     /// `to` ← the approximation at t + h from the point `from` at t. Returns its estimated error in units of the
     /// tolerance, or infinity without an estimate. If the step fails, `to` is undefined.

@@ -197,6 +197,10 @@ pub enum Within {
 pub trait Symmetric {}
 
 /// A one-step method for problems of type `P`.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is no method for `{P}`",
+    note = "a tableau is wrapped in `Rkmk::new(tableau, map)` or `Rk(tableau)`; what a method needs of a problem is in its documentation"
+)]
 pub trait Method<P: Problem> {
     /// The workspace of a step, made once and used for every step.
     ///
