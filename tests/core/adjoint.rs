@@ -287,6 +287,7 @@ fn other_sizes_are_refused() {
             for found in found.map(|found| found.expect_err("another size").to_string()) {
                 assert!(found.ends_with(&told), "{}: {found}", group.name());
             }
+            assert_eq!([group.distance(&g, &one), group.defect(&g)], [f64::INFINITY; 2]);
             let member = group.check_member(&g).expect_err("another size").to_string();
             assert!(member.contains(&format!("{rows}×{cols}")), "{}: {member}", group.name());
         }

@@ -342,12 +342,18 @@ impl LieGroup for MatrixGroup {
     fn apply_algebra(&self, v: &AlgebraMatrix, x: &Mat<f64>, y: &mut Mat<f64>) {
         mul(y, v.as_ref(), x.as_ref());
     }
-    /// Allocates.
+    /// Infinite between matrices of different sizes. Allocates.
     fn distance(&self, a: &GroupMatrix, b: &GroupMatrix) -> f64 {
+        if (a.nrows(), a.ncols()) != (b.nrows(), b.ncols()) {
+            return f64::INFINITY;
+        }
         dense::norm_frobenius(&(a.as_ref() - b.as_ref()))
     }
-    /// Allocates.
+    /// Infinite of a matrix of another size. Allocates.
     fn defect(&self, g: &GroupMatrix) -> f64 {
+        if (g.nrows(), g.ncols()) != (self.n, self.n) {
+            return f64::INFINITY;
+        }
         self.defect_of(g.as_ref()).map_or(0.0, |d| dense::norm_frobenius(&d))
     }
     fn check_elem(&self, g: &GroupMatrix) -> Result<(), Error> {
