@@ -324,3 +324,12 @@ def test_the_end_of_a_failed_run_is_where_another_one_goes_on():
     whole = lf.solve_ivp(body, (0, 10)).check()
     for name in whole.y_end:
         assert np.abs(rest.y_end[name] - whole.y_end[name]).max() < 1e-8, name
+
+
+def test_a_run_that_ended_at_its_start_has_no_estimate():
+    body = lf.RigidBody(inertia=[1, 2, 2.5], omega_body=[0.1, 1, 0.3])
+    event = lf.Event("sin(3*t)", terminal=1)
+    for r in (lf.solve_ivp(body, (0, 5), events=event), lf.solve_ivp(turn, (0, 5), [1, 0, 0], group="SO(3)", action="linear", events=event, dt=0.1)):
+        assert r.status == 1 and r.t_end == 0
+        with pytest.raises(lf.RunError, match="the run has no step"):
+            r.estimate_error()

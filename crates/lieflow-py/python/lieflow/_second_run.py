@@ -41,7 +41,7 @@ def second(run: Callable[..., Result], settings: dict[str, Any], first: Result, 
 
     The steps of the second run are no more like those of the first than 5 %.
     """
-    if not first.nsteps:
+    if not first.nsteps or first.t_end == t0:
         raise RunError("no estimate: the run has no step")
     other_settings = {**settings, "dense_output": False}
     if settings["max_steps"] is not None:
