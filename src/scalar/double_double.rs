@@ -12,10 +12,11 @@ use super::{Real, Select, Trig};
 
 /// hi + lo, with |lo| at most half an ulp of hi.
 ///
-/// The closed forms of the library run on it, and the methods that are generic in the number type. Magnus methods and Lie
-/// series have its digits. Coefficients of Runge–Kutta tableaus and of Padé approximants are f64, so steps by them are those
-/// of coefficients that are rounded: their results have 16 digits, and tolerances below that are not reached.
-///
+/// The closed forms of the library run on it, and the methods that are generic in the number type. `magnus6`,
+/// `cayley-magnus6` and Lie series on [`Se3`](crate::groups::Se3) have its digits. Coefficients of Runge–Kutta tableaus, of
+/// Padé approximants, of `magnus8` and of commutator-free methods are f64, so steps by them are those of coefficients that are
+/// rounded: their results have 16 digits, and tolerances below that are not reached. Numbers that a problem takes as f64, such
+/// as moments of inertia, are rounded too.
 ///
 /// ```
 /// use lieflow::scalar::{DoubleDouble, Real};
