@@ -376,24 +376,21 @@ impl Drive<'_> {
     /// functions that are rounding at t. After the change their values would tell nothing.
     fn zeros_with(&mut self, output: &mut dyn AnyOutput, t: f64) -> Result<usize, RunError> {
         let mut count = self.zeros_at(t);
-        let all = &self.events.all;
-        let next = self.events.found.get(self.zeros_done..).unwrap_or_default();
-        if count == next.len() || !next[..count].iter().any(|zero| all[zero.event].changes) {
+        let next = &self.events.found[self.zeros_done..];
+        if !next[..count].iter().any(|zero| self.events.all[zero.event].changes) {
             return Ok(count);
         }
         self.look_at(output, t, false)?;
-        let near = A_LITTLE_LATER * self.times.last.h.abs();
-        while let Some((zero, at)) = self.events.found[self.zeros_done..][..=count].split_last() {
-            let is_another = at.iter().all(|other| other.event != zero.event);
-            let value = output.event(zero.event, t, Some(Slot::Shown));
-            let is_rounding = self.events.all[zero.event].is_rounding(value);
-            if !(is_another && is_rounding && (zero.t - t).abs() <= near) {
-                break;
-            }
+        let Events { all, found } = &self.events;
+        let (next, near) = (&found[self.zeros_done..], A_LITTLE_LATER * self.times.last.h.abs());
+        // Another zero of an event that is handled here is one of its own.
+        let is_new = |zero: &Zero, at: &[Zero]| at.iter().all(|other| other.event != zero.event);
+        while let Some(zero) = next.get(count)
+            && (zero.t - t).abs() <= near
+            && is_new(zero, &next[..count])
+            && all[zero.event].is_rounding(output.event(zero.event, t, Some(Slot::Shown)))
+        {
             count += 1;
-            if self.zeros_done + count == self.events.found.len() {
-                break;
-            }
         }
         Ok(count)
     }

@@ -273,10 +273,8 @@ impl Events {
     ) -> Result<(), RunError> {
         for (index, event) in self.all.iter_mut().enumerate() {
             let value = event.finite(t, output.event(index, t, None))?;
-            // Its zero was just passed, or may have been, up to rounding. One that comes next has not been.
-            let comes = |zero: &Zero| zero.event == index && zero.rising == (value < 0.0);
-            let is_ahead = value != 0.0 && self.found[at.end..].iter().any(comes);
-            let anew = (event.is_rounding(value) && !is_ahead)
+            // Its zero was just passed, or may have been, up to rounding.
+            let anew = event.is_rounding(value)
                 || self.found[at.clone()].iter().any(|zero| zero.event == index);
             event.seen = Seen::only(value, anew);
         }
