@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use crate::arrays::{Input, common, fill, output};
 
 const GROUP: Se3 = Se3::new();
-/// How far each entry of the last row may be from 0 0 0 1.
+/// How far a matrix may be from a rotation, and its last row from 0 0 0 1: the sum over its entries.
 const OFF_MAX: f64 = 1e-6;
 
 type Pair = (Vector3<f64>, Vector3<f64>);
@@ -26,12 +26,14 @@ fn write_pair((a, b): &Pair, out: &mut [f64]) {
 }
 
 fn element(x: &[f64]) -> Result<Element, Error> {
-    for (j, right) in [0.0, 0.0, 0.0, 1.0].into_iter().enumerate() {
-        let value = x[12 + j];
-        if value.is_nan() || (value - right).abs() > OFF_MAX {
-            let expected = format!("{right}: the last row of [R x; 0 1] is [0, 0, 0, 1]");
-            return Err(Error::OutOfRange { arg: format!("g[3, {j}]"), value, expected });
-        }
+    let right = [0.0, 0.0, 0.0, 1.0];
+    let away: [f64; 4] = core::array::from_fn(|j| (x[12 + j] - right[j]).abs());
+    // A sum, because a maximum would lose NaN.
+    let off: f64 = away.iter().sum();
+    if off.is_nan() || off > OFF_MAX {
+        let j = (0..4).max_by(|&i, &j| away[i].total_cmp(&away[j])).unwrap_or_default();
+        let expected = format!("{}: the last row of [R x; 0 1] is [0, 0, 0, 1]", right[j]);
+        return Err(Error::OutOfRange { arg: format!("g[3, {j}]"), value: x[12 + j], expected });
     }
     let r = Matrix3::from_fn(|i, j| x[4 * i + j]);
     Ok((r, Vector3::from_fn(|i, _| x[4 * i + 3])))
