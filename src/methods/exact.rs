@@ -2,9 +2,9 @@
 //!
 //! From the momentum m at the start, m⁺ = m(h) and g⁺ = g Ψ(h) by Jacobi's elliptic functions
 //! ([`Exact`]). Order: unbounded, reported as `usize::MAX`. Preserves: everything, to the
-//! rounding of a step, whose phase does not drift in steps of one size. Cost: the constants of one orbit and its point at one time, at any h; further points from the same
-//! start, as the output times within a step, need no new constants. It computes in f64 for every scalar type. To follow
-//! one orbit without a run use [`Exact`].
+//! rounding of a step, whose phase does not drift in steps of one size. Cost: the constants of one orbit and its point at
+//! two times, at any h; further points from the same start, as the output times within a step, need no new constants. It
+//! computes in f64 for every scalar type. To follow one orbit without a run use [`Exact`].
 //! Source: C. G. J. Jacobi, J. reine angew. Math. 39 (1850); see [`Exact`].
 
 use nalgebra::{Matrix3, Vector3};

@@ -172,12 +172,9 @@ impl CoordinateMap<Broken> for Exp {
         x: &(V, V),
         y: &mut (V, V),
     ) -> Result<(), StepError> {
-        if group.1 == Fault::ForgetfulShortcut {
-            let mut fresh = self.at(group).expect("storage");
-            CoordinateMap::<Whole>::psi(self, &group.0, u, &mut fresh, g)?;
-        } else {
-            CoordinateMap::<Whole>::psi(self, &group.0, u, at, g)?;
-        }
+        let mut fresh = self.at(group).expect("storage");
+        let at = if group.1 == Fault::ForgetfulShortcut { &mut fresh } else { at };
+        self.psi(group, u, at, g)?;
         group.apply(g, x, y);
         if group.1 == Fault::WrongShortcut {
             y.1 += 1e-9 * u.1;
