@@ -23,7 +23,7 @@ pub(crate) fn rj(x: f64, y: f64, z: f64, p: f64) -> Result<f64, Error> {
 
 /// The arithmetic-geometric mean of 1 and k' = √(1 − k²). It gives sn, cn and dn at any u.
 ///
-/// The argument is 1 − k², so that k → 1 keeps its digits. Source: R. Bulirsch, Numerical calculation of
+/// The argument is k', so that k → 1 keeps its digits. Source: R. Bulirsch, Numerical calculation of
 /// elliptic integrals and elliptic functions, Numer. Math. 7 (1965): the descending Gauss transformation.
 #[derive(Clone, Debug)]
 pub(crate) struct Ladder {
@@ -34,15 +34,15 @@ pub(crate) struct Ladder {
     last: f64,
 }
 
-/// 1 − k² ≥ 1e-280 needs fewer.
+/// The smallest k' of f64 needs fewer.
 const LEVELS: usize = 16;
 
 impl Ladder {
-    /// The means of k' = √(kc2), kc2 = 1 − k².
-    pub(crate) fn new(kc2: f64) -> Self {
+    /// The means of k'.
+    pub(crate) fn new(kc: f64) -> Self {
         let mut ladder = Ladder { means: [(0.0, 0.0); LEVELS], levels: 0, last: 1.0 };
-        let (mut a, mut b) = (1.0, kc2.sqrt());
-        if kc2 == 0.0 {
+        let (mut a, mut b) = (1.0, kc);
+        if kc == 0.0 {
             return ladder;
         }
         for level in &mut ladder.means {

@@ -12,8 +12,9 @@
 //! integrated as (L/J_y)·t and an elliptic integral of the third kind that weighs m_x. That weight is at most cn²τ, because
 //! n = B²/A² ≥ 1, and half of the time on average. So no more than a bit cancels at any ratio of the inertias (the textbook
 //! forms start from L/J_z or 2E/L and lose as many digits as that ratio has). And where J_z is nearly J_y, so that the
-//! integral is divided by a small λ, the weight is small in the same proportion. Of the modulus only 1 − k² is used,
-//! because near the separatrix k loses all its digits.
+//! integral is divided by a small λ, the weight is small in the same proportion. Of the modulus only k' = √(1 − k²) is used,
+//! because near the separatrix k loses all its digits. Where k' < 1e-20, the limits of the integrals as k' → 0 take their place:
+//! then squares of k' and of cn may underflow.
 //!
 //! These formulas set up an orbit, and evaluate it near the separatrix (1 − k² < 0.013) and for large n. Elsewhere sn, cn, dn
 //! and the periodic part of φ come from [`Theta`], which is five times as fast.
@@ -76,8 +77,8 @@ struct Elliptic {
     length: f64,
     lambda: f64,
     tau0: f64,
-    /// 1 − k².
-    kc2: f64,
+    /// k' = √(1 − k²).
+    kc: f64,
     ladder: Ladder,
     /// K, infinite on the separatrix.
     quarter: f64,
@@ -107,9 +108,8 @@ struct Fast {
     inverse: f64,
 }
 
-/// Below this 1 − k² the orbit is treated as the separatrix. It would return to the middle axis only after more than
-/// 300 of its time constants 1/λ.
-const SEPARATRIX: f64 = 1e-280;
+/// Below this k' the integrals are their limits as k' → 0. The limits are exact to the square of this.
+const NEAR_SEPARATRIX: f64 = 1e-20;
 
 /// Below this angle the square of a turn is rounding.
 const SMALL_TURN: f64 = 1e-8;
@@ -326,8 +326,7 @@ impl Elliptic {
         }
         // 1 − k² = d_y J_z/(C²(J_z − J_y)).
         let kc = (d.abs() * (j[z] / (j[z] - j[y]).abs())).sqrt() / s / amplitude_z;
-        let kc2 = (kc * kc).min(1.0);
-        let kc2 = if kc2 < SEPARATRIX { 0.0 } else { kc2 };
+        let kc = kc.min(1.0);
         let sign_z = 1.0f64.copysign(m[z]);
         // ṁ_y = m_p m_q (1/J_q − 1/J_p) for y, p, q cyclic.
         let (p, q) = ((y + 1) % 3, (y + 2) % 3);
@@ -337,17 +336,17 @@ impl Elliptic {
         let (cn, sn) = (m[x] / amplitude[0], m[y] / amplitude[1]);
         let r = cn.hypot(sn);
         let (cn, sn) = (cn / r, sn / r);
-        if kc2 == 0.0 && cn == 0.0 {
+        if kc == 0.0 && cn == 0.0 {
             return Ok(None); // on the middle axis exactly
         }
-        let quarter = if kc2 > 0.0 { rf(0.0, kc2, 1.0)? } else { f64::INFINITY };
-        let tau0 = if kc2 == 0.0 {
+        let quarter = first_kind(kc, (1.0, 0.0))?;
+        let tau0 = if kc == 0.0 {
             // cn = sech τ > 0 on the separatrix; cn < 0 is the orbit turned by π about z.
             amplitude[0] *= cn.signum();
             amplitude[1] *= cn.signum();
             (sn / cn).asinh()
         } else {
-            let f = sn * rf(cn * cn, cn * cn + kc2 * sn * sn, 1.0)?;
+            let f = first_kind(kc, (sn, cn.abs()))?;
             if cn >= 0.0 { f } else { 2.0 * quarter.copysign(sn) - f }
         };
 
@@ -361,8 +360,8 @@ impl Elliptic {
             length,
             lambda,
             tau0,
-            kc2,
-            ladder: Ladder::new(kc2),
+            kc,
+            ladder: Ladder::new(kc),
             quarter,
             ratio,
             base: length / j[y],
@@ -373,7 +372,7 @@ impl Elliptic {
             fast: None,
         };
         if quarter.is_finite() {
-            motion.d_quarter = motion.third_kind(1.0, 0.0, kc2.sqrt())?;
+            motion.d_quarter = motion.third_kind(1.0, 0.0, kc)?;
         }
         motion.fast = motion.fast(length, j[x], j[y])?;
         if motion.fast.is_none() {
@@ -385,7 +384,7 @@ impl Elliptic {
     /// From |m| and the two moments of inertia of the plane that m circles in.
     fn fast(&self, length: f64, j_x: f64, j_y: f64) -> Result<Option<Fast>, Error> {
         let theta = match self.quarter.is_finite() {
-            true => Theta::new(self.kc2, self.quarter, self.ratio)?,
+            true => Theta::new(self.kc * self.kc, self.quarter, self.ratio)?,
             false => None,
         };
         Ok(theta.map(|theta| {
@@ -530,22 +529,37 @@ impl Elliptic {
     /// D for |τ| ≤ K. With s, c, d = sn, cn, dn, n = B²/A², p = c² + n s² and q = c² + (1−k²)s²/n:
     /// ∫ c²/p = s·(c·R_C(d², pq) + (1−k²)s²/(3n)·R_J(c², d², 1, q)) (DLMF 19.21.12).
     fn third_kind(&self, s: f64, c: f64, d: f64) -> Result<f64, Error> {
-        let (n, kc2) = (self.ratio, self.kc2);
-        let (c2, d2, s2) = (c * c, d * d, s * s);
+        let (n, kc) = (self.ratio, self.kc);
         if s == 0.0 {
             return Ok(0.0);
         }
-        let (p, q) = (c2 + n * s2, c2 + kc2 * s2 / n);
-        let far_on_separatrix = kc2 == 0.0 && c2 < 1e-30;
-        let elementary = match (c > 0.0, far_on_separatrix) {
-            (true, false) => c * rc(d2, p * q)?,
-            (_, true) => rc(1.0, n)?,
-            _ => 0.0,
-        };
-        let rest = match kc2 > 0.0 {
-            true => kc2 * s2 / (3.0 * n) * rj(c2, d2, 1.0, q)?,
-            false => 0.0,
-        };
-        Ok(s * (elementary + rest))
+        let p = c * c + n * s * s;
+        if kc > NEAR_SEPARATRIX {
+            let (c2, kc2) = (c * c, kc * kc * s * s);
+            let q = c2 + kc2 / n;
+            let elementary = if c > 0.0 { c * rc(d * d, p * q)? } else { 0.0 };
+            return Ok(s * (elementary + kc2 / (3.0 * n) * rj(c2, d * d, 1.0, q)?));
+        }
+        // In parts of d, which may be as small as k'. Far on the separatrix c = d, and both may be zero.
+        let (c_d, kc_d) = if d > 0.0 { (c / d, kc * s / d) } else { (1.0, 0.0) };
+        let elementary = c_d * rc(1.0, p * (c_d * c_d + kc_d * kc_d / n))?;
+        // Where z = 1 is far above x, y and p, R_J(x, y, z, p) is 3 ∫ dw/(y − p + w²(p − x)) from w = 1 to √(y/x). With
+        // d² − c² = (1−k²)s² the rest is ∫ dw/(n − 1 + w²) from 1 to d/c, the arc tangent of (d − c)/((n − 1)c + d).
+        let x = kc_d * kc_d / (1.0 + c_d) / (1.0 + (n - 1.0) * c_d);
+        Ok(s * (elementary + x * rc(1.0, 1.0 + (n - 1.0) * x * x)?))
+    }
+}
+
+/// F, the integral of the first kind with k', at (sin, cos) of its amplitude, cos ≥ 0; infinite for K on the separatrix.
+///
+/// As k' → 0 it is arsinh(s/c), and near K it is K − arsinh(c/(s k')) with K = ln(4/k').
+fn first_kind(kc: f64, (s, c): (f64, f64)) -> Result<f64, Error> {
+    if kc > NEAR_SEPARATRIX {
+        Ok(s * rf(c * c, c * c + kc * kc * s * s, 1.0)?)
+    } else if c > 1e-10 {
+        Ok((s / c).asinh())
+    } else {
+        let left = if c > 0.0 { (c / s.abs() / kc).asinh() } else { 0.0 };
+        Ok((4f64.ln() - kc.ln() - left).copysign(s))
     }
 }

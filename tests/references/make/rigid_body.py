@@ -21,9 +21,10 @@ x ~ e_x - (e_x.z) z, y = z x x, and
 by Carlson's R_J (elliptic integral of the third kind).  On the separatrix
 (d_b = 0) sn = tanh; where m x J^-1 m = 0 the motion is a steady rotation.
 
-(b) Independent check: Taylor series of order 70 for m and a unit quaternion in
-fixed-point integers of 240 bits with a variable step (no elliptic function), for
-all cases of moderate length.
+(b) Independent check: Taylor series of order 70 and more for m and a unit quaternion
+in fixed-point integers of 240 bits and more with a variable step (no elliptic
+function), for all cases of moderate length. Small components of m need more bits:
+once to be there, and once to grow.
 (c) All cases: the closed form restarted from its own state at t/3.
 The script asserts that (a) agrees with (b) and with (c) to 1e-33 relative to |m|
 and to |g|, that g is orthogonal and that g m = g0 m0, and prints the worst
@@ -47,6 +48,7 @@ from .schema import case, check, exact, flat, value, write
 DIGITS = 36      # significant digits written
 GUARD = 70       # working digits beyond those lost to small parameters
 MAX_STEPS = 4000
+MAX_BITS = 660
 
 
 def real(q):
@@ -177,11 +179,17 @@ def closed(J, m0, t):
         return m, g
 
 
-def taylor(J, m0, t, bits=240, order=70):
+def taylor(J, m0, t):
     """m(t), g(t) with g(0) = 1 by power series in fixed-point integers; None if too long."""
     L = mp.sqrt(real(dot(m0, m0)))
     if not L or not t:
         return [real(q) for q in m0], mp.eye(3).tolist()
+    least = int(min(0, *(mp.log(real(abs(q)) / L, 2) for q in m0 if q)))
+    grows = int(1.5 * L * abs(real(t)) / real(min(J)))
+    bits = 240 - 2 * least if least < -60 and least + grows > -120 else 240
+    if bits > MAX_BITS:
+        return None
+    order = 7 * bits // 24
     one = 1 << bits
     fixed = lambda v: int(mp.nint(mp.ldexp(v, bits)))
     scale = min(J)
@@ -305,6 +313,13 @@ def cases():
             m = [eps, eps, eps]
             m[axis] = 1.3
             yield f"nearly_{word}_{eps:g}", (1, 2, 3), m, 10.0
+    for exponent, t in ((60, 480.0), (122, 977.0), (130, 1040.0), (150, 2000.0), (200, 1610.0), (290, 2330.0)):
+        small = 10.0 ** -exponent
+        for number, (J, m) in enumerate((((1, 2, 3), (small, 1, small)), ((3, 1, 2), (-2 * small, small, -1)))):
+            yield f"tiny_beside_middle_axis_1e-{exponent}_{number}", J, m, t * (1 + 1.3 * number)
+    for eps in (1e-290, 1e-305):
+        yield f"tiny_beside_axis3_{eps:g}", (1, 2, 3), (eps, 2 * eps, 1.3), 10.0
+        yield f"tiny_beside_axis1_{eps:g}", (1, 2, 3), (1.3, eps, -eps), 10.0
     yield "nearly_symmetric_ab_1e-9_t100", (1, 1 + 1e-9, 2), (0.6, -0.8, 0.5), 100.0
     yield "nearly_symmetric_ab_1e-12_t100", (1, 1 + 1e-12, 2), (0.6, -0.8, 0.5), 100.0
     yield "nearly_symmetric_ab_1e-12_flat_t100", (1, 1 + 1e-12, 2), (0.6, -0.8, 1e-6), 100.0
