@@ -185,8 +185,8 @@ pub(super) struct Proxy {
 
 impl Proxy {
     /// The polynomial through the values of this level, which are at their places among 17. `noise` is the least rounding
-    /// of the values.
-    pub(super) fn new(values: &Numbers, level: usize, noise: f64) -> Self {
+    /// of the values, and `blur` is that of the places.
+    pub(super) fn new(values: &Numbers, level: usize, noise: f64, blur: f64) -> Self {
         let (degree, stride) = (DEGREES[level], stride(level));
         let mut at = [0.0; MOST];
         at.iter_mut().zip(values.iter().step_by(stride)).for_each(|(at, value)| *at = *value);
@@ -199,7 +199,9 @@ impl Proxy {
         let c = apply(&CHEBYSHEV[level], &at);
         let b = apply(to_bernstein, &c);
         let terms = c.iter().zip(largest).map(|(c, largest)| c.abs() * largest);
-        let rounding = noise + ROUNDING * terms.sum::<f64>();
+        // The slope of the polynomial T_k is at most k², and 2k² on [0, 1].
+        let slopes = c.iter().enumerate().map(|(k, c)| c.abs() * (2 * k * k) as f64);
+        let rounding = noise + ROUNDING * terms.sum::<f64>() + blur * slopes.sum::<f64>();
         let last = c[degree - 1].abs() + c[degree].abs();
         let far = last + rounding;
         let level = level_of(&c, level, rounding);

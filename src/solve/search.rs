@@ -223,6 +223,8 @@ impl Search {
     ) -> Result<Option<usize>, RunError> {
         let [left, right] = ends;
         let at = |place: f64| left.0 + place * (right.0 - left.0);
+        // The rounding of t, in parts of the length.
+        let blur = f64::EPSILON * left.0.abs().max(right.0.abs()) / (right.0 - left.0).abs();
         let middle = roots::MOST / 2;
         let mut known = middle;
         for level in level..=roots::FINEST {
@@ -231,7 +233,7 @@ impl Search {
                 values[j] = g(at(roots::place(j)))?;
             }
             known = stride;
-            let proxy = Proxy::new(&values, level, noise);
+            let proxy = Proxy::new(&values, level, noise, blur);
             if let Some(separators) = proxy.separators() {
                 let places = separators.places().iter().map(|&place| at(place));
                 self.zeros_among(ends, places, g, found)?;

@@ -340,6 +340,38 @@ fn what_an_event_costs() {
     }
 }
 
+/// Far from t = 0 the rounding of t is more than that of g. It does not count as a function that is too fast.
+#[test]
+fn events_far_from_zero_cost_no_more() {
+    let body = RigidBody::<f64>::new(INERTIA).unwrap();
+    let functions: [fn(f64, &V) -> f64; 3] =
+        [|_, m| m.y, |t, m| m.y - 0.5 * (0.3 * t).sin(), |_, m| m.x * m.z - 0.1];
+    for (number, g) in functions.into_iter().enumerate() {
+        for points in [None, Some(3), Some(200)] {
+            let [near, far, farther] = [0.0, 1e6, 1e10].map(|start| {
+                let calls = Cell::new(0);
+                let event = Event::new("g", |t, m: &V| {
+                    calls.set(calls.get() + 1);
+                    g(t - start, m)
+                });
+                let event = match points {
+                    Some(points) => event.points(points),
+                    None => event,
+                };
+                let solve = Solve::new(&body, &Taylor::<16>, [start, start + 100.0]);
+                let run = solve.tolerances(1e-9, 1e-9).event(event).run(FLIPS).unwrap();
+                assert_eq!(run.stats.unsure_steps, 0);
+                (run.events.len(), f64::from(calls.get()))
+            });
+            for (zeros, calls) in [far, farther] {
+                assert_eq!(zeros, near.0, "function {number}, {points:?}");
+                let ratio = calls / near.1;
+                assert!(ratio < 1.1, "function {number}, {points:?}: {ratio} times the calls");
+            }
+        }
+    }
+}
+
 /// A function that turns too fast for its steps is told, and one that does not is not.
 #[test]
 fn steps_that_may_have_more_zeros_are_counted() {
