@@ -28,7 +28,7 @@ use crate::error::{Error, StepError};
 use crate::groups::LieGroup;
 use crate::maps::CoordinateMap;
 use crate::maps::PsiOf;
-use crate::scalar::Real;
+use crate::scalar::{Real, infinite_or_nan};
 use crate::space::{Gap, Metric};
 use crate::tolerance::Scales;
 
@@ -50,9 +50,11 @@ pub trait Action<G: LieGroup>: Send + Sync {
     #[inline]
     fn check(&self, _group: &G, p: &Self::Point) -> Result<(), Error> {
         let size = p.size();
-        match (size * size).is_finite() {
+        let square = size * size;
+        let expected = "finite numbers, and ‖y‖ below 1e154";
+        match square.is_finite() {
             true => Ok(()),
-            false => Err(Error::out_of_range("y", f64::NAN, "finite numbers, and ‖y‖ below 1e154")),
+            false => Err(Error::out_of_range("y", infinite_or_nan(square), expected)),
         }
     }
 

@@ -45,7 +45,7 @@ pub(crate) use unitary::{minus_adjoint, mul_adjoint_skew, mul_complex};
 use rand::Rng;
 
 use crate::error::Error;
-use crate::scalar::Real;
+use crate::scalar::{Real, infinite_or_nan};
 use crate::space::{Gap, Metric};
 use crate::tolerance::Scales;
 
@@ -229,7 +229,7 @@ pub trait LieGroup: LieAlgebra {
 fn check_norm<S: Real>(norm: S) -> Result<(), Error> {
     match norm.is_finite() {
         true => Ok(()),
-        false => Err(Error::out_of_range("y", f64::NAN, "finite numbers")),
+        false => Err(Error::out_of_range("y", infinite_or_nan(norm), "finite numbers")),
     }
 }
 

@@ -8,7 +8,7 @@ use rand_distr::StandardNormal;
 
 use super::{LieAlgebra, LieGroup, RESIDUAL_MAX, Sample};
 use crate::error::Error;
-use crate::scalar::Real;
+use crate::scalar::{Real, infinite_or_nan};
 use crate::so3::{self, apply3, compose3, cross, dot3, in_range};
 
 /// The group SO(3). Elements of the algebra are 3-vectors (û of the paper), elements of the group are 3×3 rotations.
@@ -27,12 +27,13 @@ impl<S> So3<S> {
 /// Are the numbers of a state finite?
 #[inline(always)] // asked after every step of a run
 pub(super) fn check_finite<S: Real>(y: &[S]) -> Result<(), Error> {
-    if y.iter().all(|x| x.is_finite()) { Ok(()) } else { Err(not_finite()) }
+    if y.iter().all(|x| x.is_finite()) { Ok(()) } else { Err(not_finite(y)) }
 }
 
 #[cold]
-fn not_finite() -> Error {
-    Error::out_of_range("y", f64::NAN, "finite numbers")
+fn not_finite<S: Real>(y: &[S]) -> Error {
+    let first = y.iter().find(|x| !x.is_finite());
+    Error::out_of_range("y", first.map_or(f64::NAN, |x| infinite_or_nan(*x)), "finite numbers")
 }
 
 /// √Σx².

@@ -5,7 +5,7 @@
 
 use super::{Adjoint, LieAlgebra, LieGroup};
 use crate::error::{Error, StepError};
-use crate::scalar::Real;
+use crate::scalar::{Real, infinite_or_nan};
 use crate::space::{Gap, LinearSpace};
 use crate::tolerance::Scales;
 
@@ -100,7 +100,7 @@ impl<V: LinearSpace> LieGroup for Translations<V> {
         g.check_sizes("y", &self.zero)?;
         match g.is_finite() {
             true => Ok(()),
-            false => Err(Error::out_of_range("y", f64::NAN, "finite numbers")),
+            false => Err(Error::out_of_range("y", infinite_or_nan(g.size()), "finite numbers")),
         }
     }
     #[inline]

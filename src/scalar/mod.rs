@@ -173,6 +173,18 @@ pub(crate) fn larger<S: Real>(a: S, b: S) -> S {
     c
 }
 
+/// ±∞ or NaN, which one x is that is not finite. For messages.
+#[cold]
+pub(crate) fn infinite_or_nan<S: Real>(x: S) -> f64 {
+    if x.any_below(f64::MIN) {
+        f64::NEG_INFINITY
+    } else if (S::lit(0.0) - x).any_below(f64::MIN) {
+        f64::INFINITY
+    } else {
+        f64::NAN
+    }
+}
+
 /// The power of two at or below x ≥ 0, within 2^±1000. A quotient by it has the digits of what it divides.
 pub(crate) fn power_of_two(x: f64) -> f64 {
     const LOW: f64 = f64::from_bits((1023 - 1000) << 52);
