@@ -57,6 +57,9 @@ pub struct Facts {
     /// True if f is evaluated only within a step, not at its start or end, also for points between. Then a step to a stop has
     /// its whole size ([`Solve::stops`](crate::Solve::stops)).
     pub stages_within: bool,
+    /// True if steps by error have to turn the state by 8 radians at most. Points within longer steps may have no digits, where
+    /// no error estimate sees it. Pairs of `Rkmk` choose such steps themselves.
+    pub short_turns: bool,
 }
 
 impl Facts {
@@ -75,6 +78,7 @@ impl Facts {
             doubled_for_error: false,
             stays_on_manifold: true,
             stages_within: false,
+            short_turns: false,
         }
     }
 
@@ -89,6 +93,11 @@ impl Facts {
     /// Says that f is evaluated only within a step, as at Gauss–Legendre nodes.
     pub const fn stages_within(self) -> Self {
         Facts { stages_within: true, ..self }
+    }
+
+    /// Says that steps by error have to turn the state by 8 radians at most.
+    pub const fn short_turns(self) -> Self {
+        Facts { short_turns: true, ..self }
     }
 
     /// Sets the order of the error estimate of a tableau; `None` for a tableau without an embedded row.

@@ -182,6 +182,7 @@ macro_rules! method {
                 let (extension, most) = (self.extension(), self.psi.order(problem.group()));
                 Facts::of_order(self.tableau.order.min(most))
                     .dense(extension.order().min(most), 1 + extension.evaluations())
+                    .short_turns()
             }
             fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
                 RkmkGaussWork::new(problem, &self.psi, like)

@@ -67,6 +67,7 @@ pub use magnus::CfMagnus;
 pub use one_bracket::OneBracket;
 pub use projection::ProjectionMethod;
 pub use rk::Rk;
+pub(crate) use rkmk::FARTHEST;
 pub use rkmk::Rkmk;
 pub use simo_wong::SimoWong;
 pub use splitting::{MR2, MR4, Splitting};

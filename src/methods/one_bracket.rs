@@ -271,7 +271,8 @@ where
         let facts = Facts::of_order(self.0.order)
             .estimate(self.0.name, self.0.embedded.map(|(order, _)| order))
             .dense(extension.order(), extension.evaluations());
-        Facts { step, step_with_error, ..facts }
+        // The polynomial of the pair within a step has order 3, and no error estimate sees it.
+        Facts { step, step_with_error, short_turns: self.0.embedded.is_some(), ..facts }
     }
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
         let alg = problem.group();

@@ -10,7 +10,7 @@ use super::stops::Stop;
 use super::streak::{Reach, Run};
 use super::timeline::{Chooser, Pacer, Timeline, Turns};
 use crate::error::StepError;
-use crate::methods::{Attempts, Resize, Step, Streak};
+use crate::methods::{Attempts, FARTHEST, Resize, Step, Streak};
 
 /// The number of rejections in a row that ends a run.
 const REJECTIONS_MAX: u32 = 60;
@@ -127,7 +127,7 @@ impl Timeline {
                 let Pacer::ByError(Chooser { wall, obstacle, .. }) = self.pacer else {
                     return Ok(());
                 };
-                let h = h.min(self.largest_size(FARTHEST_TURN));
+                let h = h.min(self.largest_size(self.farthest_turn()));
                 return Err(self.underflow(h, obstacle.filter(|_| wall.is_some())));
             }
             self.see_noise_again(run.points(), size);
@@ -226,7 +226,7 @@ impl Timeline {
     /// The end and the size of a step of about this size. A step ends at `stop` if that is near. It ends half way to
     /// `stop` if otherwise the next step would be short.
     fn propose(&self, h: f64, stop: f64) -> (f64, f64) {
-        let max_step = self.largest_size(FARTHEST_TURN);
+        let max_step = self.largest_size(self.farthest_turn());
         let left = (stop - self.t).abs();
         let h = h.min(max_step);
         if left <= h || (left <= 1.01 * h && left <= max_step) {
@@ -254,8 +254,13 @@ impl Timeline {
         self.step_to(end, end - self.t, false).t
     }
 
-    /// The largest size of a step that turns the state by this number of radians at most, if events have zeros to search for. It is
-    /// not below the least size.
+    /// The radians by which a step turns the state at most, as far as it is known how fast that turns.
+    fn farthest_turn(&self) -> f64 {
+        if self.facts.short_turns { FARTHEST } else { FARTHEST_TURN }
+    }
+
+    /// The largest size of a step that turns the state by this number of radians at most, as far as it is known how fast that
+    /// turns. It is not below the least size.
     fn largest_size(&self, turn: f64) -> f64 {
         let by_turn = self.turns.as_ref().map_or(f64::INFINITY, |turns| turn * turns.radian);
         match &self.pacer {

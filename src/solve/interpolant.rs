@@ -146,9 +146,9 @@ pub(super) fn no_polynomial() -> Error {
     Error::Unsupported {
         what: "dense output as data",
         with: "this method".into(),
-        why: "points within its steps are shorter steps, which call f again. Use rkmk with any tableau and map \
-              (with an adaptive step size: a pair, such as dop853, verner6, dopri5, bs3), \
-              a Lie series, a method with one bracket, rkmk-gauss, or rk",
+        why: "points within its steps are shorter steps, which call f again. With an adaptive step size use rkmk or rk \
+              with a pair, such as dop853, verner6, dopri5, bs3, or a Lie series, or magnus43. With steps of one size \
+              use rkmk or rk with any tableau, a Lie series, rkmk4-2c, rkmk-gauss4, gauss4 or gauss6",
     }
 }
 

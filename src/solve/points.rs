@@ -6,7 +6,7 @@
 
 use super::held::Held;
 use super::interpolant::{Listing, Piece, no_polynomial};
-use super::stats::{Cadence, RunError, Stats, power_of_two_above};
+use super::stats::{Cadence, RunError, Stats, power_of_two_above, power_of_two_of_rate};
 use crate::actions::Action;
 use crate::error::{Error, StepError};
 use crate::groups::{LieAlgebra, OFF_M_MAX};
@@ -487,7 +487,7 @@ impl<P: Problem, M: Method<P>> AnyPoints for Points<'_, P, M> {
         problem.f(ScalarOf::<P>::lit(t), y, v, field);
         let relative = action.error_ratio(group, v, y, &mut Scales::relative());
         let rate = smaller(group.norm(v), relative);
-        if rate.any_below(f64::INFINITY) { power_of_two_above(rate) } else { 0.0 }
+        if rate.any_below(f64::INFINITY) { power_of_two_of_rate(rate) } else { 0.0 }
     }
     fn correct(&mut self, cadence: &mut Cadence, stats: &mut Stats) -> Result<(), Error> {
         let Points { problem, y, orbit, restore, .. } = self;

@@ -81,10 +81,23 @@ impl Stats {
 
 /// A power of two above a number that is not negative, and at least ε/4. For numbers that are not f64.
 pub(super) fn power_of_two_above<S: Real>(x: S) -> f64 {
+    power_of_two_from(f64::EPSILON / 4.0, x)
+}
+
+/// A power of two above a number that is not negative, of any size.
+pub(super) fn power_of_two_of_rate<S: Real>(x: S) -> f64 {
+    let mut least = f64::EPSILON / 4.0;
+    while x.all_below(f64::EPSILON * least) && least > f64::MIN_POSITIVE {
+        least *= f64::EPSILON;
+    }
+    power_of_two_from(least, x)
+}
+
+fn power_of_two_from<S: Real>(least: f64, x: S) -> f64 {
     if !x.any_below(f64::INFINITY) {
         return f64::INFINITY;
     }
-    let mut bound = f64::EPSILON / 4.0;
+    let mut bound = least;
     while !x.all_below(bound) && bound < f64::MAX / 2.0 {
         bound *= 2.0;
     }

@@ -93,7 +93,7 @@ pub(super) struct Timeline {
     pub(super) last: Step<f64>,
     pub(super) looked_at: Looked,
     pub(super) pacer: Pacer,
-    /// How fast the state turns, if events have zeros to search for.
+    /// How fast the state turns, if events have zeros to search for, or steps have to turn it little.
     pub(super) turns: Option<Turns>,
     pub(super) cadence: Cadence,
     pub(super) stats: Stats,
@@ -169,8 +169,12 @@ impl Timeline {
     }
 
     /// Lets exact steps be short enough to show events, and tells long steps to the search for their zeros.
+    ///
+    /// Where steps by error have to be short, it is known how fast the state turns, too.
     pub(super) fn expect_events(&mut self, has_events: bool, has_zeros: bool) {
-        self.turns = has_zeros.then_some(Turns { radian: f64::INFINITY, next: 0 });
+        let by_error = matches!(self.pacer, Pacer::ByError(_));
+        let asks = has_zeros || by_error && self.facts.short_turns;
+        self.turns = asks.then_some(Turns { radian: f64::INFINITY, next: 0 });
         if let Pacer::ByError(chooser) = &mut self.pacer {
             chooser.has_events = has_events;
         }

@@ -9,8 +9,8 @@ use lieflow::groups::{
 use lieflow::maps::{CoordinateMap, Exp};
 use lieflow::methods::commutator_free::{CF4, CF43};
 use lieflow::methods::low_storage::LS32;
-use lieflow::methods::tableau::{DOP853, DOPRI5, RK4};
-use lieflow::methods::{CommutatorFree, Doubling, LowStorage, Rk, Rkmk};
+use lieflow::methods::tableau::{DOP853, DOPRI5, HEUN, RK4};
+use lieflow::methods::{CommutatorFree, Doubling, GAUSS4, LowStorage, Rk, Rkmk, RkmkGauss};
 use lieflow::problems::Problem;
 use lieflow::{Solve, StepControl};
 use nalgebra::Vector3;
@@ -203,17 +203,36 @@ fn rows_within_long_steps() {
                 (0..4).for_each(|j| (0..4).for_each(|i| v.as_mut()[(i, j)] = rate * a[(i, j)]));
             };
             let problem = boxed_flow(so4.clone(), LeftTranslation, field);
-            let method = Rkmk::new(DOP853, Exp);
-            let run = Solve::new(&problem, &method, [0.0, 100.0]).tolerances(rtol, 0.0);
-            let run = run.times(&times[..]).run(so4.identity()).expect("a run");
-            for (t, y) in run.times.iter().zip(&run.points) {
-                let turn = if changes == 0.0 { *t } else { phase(*t) };
+            let exact = |t: f64| {
+                let turn = if changes == 0.0 { t } else { phase(t) };
                 let mut u = so4.zero();
                 let from = so4.algebra(a.clone()).expect("an element");
                 so4.axpy(turn, &from, &mut u);
-                let exact = Exp.eval(&so4, &u).expect("exp");
-                let off = so4.distance(y, &exact);
-                assert!(off < rtol.min(1e-7), "rtol = {rtol}, t = {t}: {off}");
+                Exp.eval(&so4, &u).expect("exp")
+            };
+            // The largest error of a row.
+            macro_rules! off {
+                ($method:expr) => {{
+                    let method = $method;
+                    let run = Solve::new(&problem, &method, [0.0, 100.0]).tolerances(rtol, 0.0);
+                    let run = run.times(&times[..]).run(so4.identity()).expect("a run");
+                    let rows = run.times.iter().zip(&run.points);
+                    rows.map(|(t, y)| so4.distance(y, &exact(*t))).fold(0.0, f64::max)
+                }};
+            }
+            let off = off!(Rkmk::new(DOP853, Exp));
+            assert!(off < rtol.min(1e-7), "dop853, rtol = {rtol}: {off}");
+            // Methods in two halves: a row is a shorter step. Their errors are those of the ends of steps.
+            let in_halves = [
+                off!(Doubling(Rkmk::new(RK4, Exp))),
+                off!(Doubling(Rkmk::new(HEUN, Exp))),
+                off!(Doubling(RkmkGauss::new(GAUSS4, Exp))),
+            ];
+            for (number, off) in in_halves.into_iter().enumerate() {
+                assert!(
+                    off < (1000.0 * rtol).max(1e-7),
+                    "{number}, rtol = {rtol}, {changes}: {off}"
+                );
             }
         }
     }

@@ -317,7 +317,7 @@ def solve_ivp(
     """Solve ẏ = λ_*(f(t, y))(y) on a manifold M with the action of a Lie group.
 
     On a group (``action="translation"``) this is ẏ = f y in space, and ẏ = y f in the body. Every point is on M to
-    rounding; on SL(n) and SU(n) with n > 2 the maps cay and pade22 leave det = 1 by the error of the method.
+    rounding, but for rk and the Gauss methods in space; on SL(n) and SU(n) with n > 2 the maps cay and pade22 leave det = 1 by the error of the method.
 
     Parameters
     ----------
