@@ -85,6 +85,10 @@ pub(crate) fn words(name: &str, error: &Error) -> (String, String, String) {
             let value = format!("a matrix whose trace is {} away from 0", Plain(distance));
             (of(arg).into(), value, format!("an element of the Lie algebra of {group}"))
         }
+        Error::Singular { arg: "g + 𝟙", rcond, .. } => {
+            let value = format!("a matrix with an eigenvalue −1 (g + 𝟙 has rcond = {rcond:.1e})");
+            ("g".into(), value, "a matrix cay(u), which has no eigenvalue −1".into())
+        }
         Error::Singular { arg, rcond, minimum } => {
             let value = format!("columns that depend on each other (rcond = {rcond:.1e})");
             (of(arg).into(), value, format!("rcond of at least {minimum:e}"))
@@ -96,6 +100,17 @@ pub(crate) fn words(name: &str, error: &Error) -> (String, String, String) {
         ),
         Error::Unsupported { what: "dense output as data", with, why } => {
             ("dense_output".into(), format!("True with {with}"), format!("False: {why}"))
+        }
+        Error::Unsupported { what: "Lagrangian", with, .. } => {
+            let expected = "the group Sp(2m): other matrices do not keep P symmetric";
+            ("action".into(), format!("lagrangian with {with}"), expected.into())
+        }
+        Error::Unsupported { what, with, why } if name == "solve_ivp" => {
+            ("method".into(), format!("{what} with {with}"), format!("what fits it: {why}"))
+        }
+        Error::NoLogarithm { re, im, why, .. } => {
+            let value = format!("a matrix with the eigenvalue {}: {why}", plain_complex(*re, *im));
+            ("g".into(), value, "a matrix with a real logarithm".into())
         }
         error => (name.into(), error.to_string(), String::new()),
     }

@@ -445,3 +445,14 @@ def test_a_span_with_too_many_jumps_is_refused():
     flip = lf.Schrodinger(energies=[0, 0], coupling=[[0, 0.5], [0.5, 0]], pulse=[20, 1], amplitudes=[1, 0])
     run = lf.solve_ivp(flip, (0, np.inf), events=lf.Event("t - 40", terminal=1), quantities=["populations"])
     assert run.success and np.abs(run.populations[-1] - np.sin(0.5 * np.sqrt(np.pi) + [np.pi / 2, 0]) ** 2).max() < 1e-9
+
+
+@pytest.mark.parametrize(("group", "y0", "arguments", "argument"), [
+    ("SO(4)", np.eye(2), {"action": "lagrangian"}, "action"),
+    ("SO(3,1)", np.eye(4), {"method": "rkmk4 ccsk", "frame": "space"}, "method"),
+])
+def test_what_does_not_fit_the_group_has_its_name(group, y0, arguments, argument):
+    with pytest.raises(lf.ArgumentError) as refused:
+        lf.solve_ivp(lambda t, y: np.zeros((4, 4)), (0, 1), y0, group=group, **arguments)
+    assert refused.value.argument == argument and refused.value.expected
+    assert "MatrixGroup" not in str(refused.value)

@@ -9,6 +9,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 import scipy.linalg
+from numpy.testing import assert_allclose
 
 import lieflow as lf
 from lieflow import se3
@@ -180,3 +181,26 @@ def test_matrices_whose_squares_overflow_are_in_no_group(group):
     for size in (1e80, 1e155, 1e200):
         with pytest.raises(lf.ArgumentError, match="^g: a matrix at a relative distance of .* from " + re.escape(group.name)):
             group.Ad(size * np.eye(group.n), np.zeros((group.n, group.n)))
+
+
+@pytest.mark.parametrize("scale", [1e-13, 1e-7, 1.0, 1e6, 1e13])
+def test_membership_does_not_depend_on_the_scale_of_m(scale):
+    group, c, s = lf.Gm(scale * np.eye(2)), np.cos(0.3), np.sin(0.3)
+    rotation, other = np.array([[c, -s], [s, c]]), np.array([[2.0, 1.0], [0.0, 3.0]])
+    u = np.array([[0.0, -1.0], [1.0, 0.0]])
+    assert group.contains(rotation) and not group.contains(other)
+    assert_allclose(group.Ad(rotation, u), u, rtol=0, atol=1e-14)
+    with pytest.raises(lf.ArgumentError, match="^g: a matrix at a relative distance"):
+        group.Ad(other, u)
+
+
+def test_refusals_of_maps_name_their_argument_once():
+    with pytest.raises(lf.ArgumentError) as refused:
+        lf.GL(2).log(np.diag([-1.0, -2.0]))
+    assert refused.value.argument == "g" and str(refused.value).count("g:") == 1 and refused.value.expected
+    for tol in (-1.0, np.nan):
+        with pytest.raises(lf.ArgumentError, match="^tol: "):
+            lf.GL(2).contains(np.eye(2), tol=tol)
+    for tol in (None, "a"):
+        with pytest.raises(TypeError, match="^tol: "):
+            lf.GL(2).contains(np.eye(2), tol=tol)

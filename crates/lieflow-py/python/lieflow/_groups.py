@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _lieflow
-from ._arrays import Array, elements, into, leading, near, own, pair, real, size_of_elements, what, whole
+from ._arrays import Array, elements, into, leading, near, number, own, pair, real, size_of_elements, what, whole
 from ._errors import ArgumentError
 from ._types import Matrices, Real, Whole
 
@@ -24,7 +24,7 @@ class Group:
 
     ========================  ====================================================
     ``exp(u)``, ``log(g)``    the exponential and its inverse
-    ``cay(u), cay_inv(g)``    (𝟙 − u/2)⁻¹(𝟙 + u/2) and its inverse (not for GL and SL)
+    ``cay(u), cay_inv(g)``    (𝟙 − u/2)⁻¹(𝟙 + u/2) and its inverse; see SL
     ``dexp(u, v)``            d/dε exp(u + εv) = dexp_u(v) exp(u)
     ``dexpinv(u, v, q=)``     its inverse, or the series of it up to k = q
     ``dcay(u, v)``            (𝟙 − u/2)⁻¹ v (𝟙 + u/2)⁻¹
@@ -91,8 +91,14 @@ class Group:
     def _element(self, name: str, x: Matrices) -> Array:
         """Elements of the group."""
         g = elements(name, x, (self.n, self.n))
-        near(name, self._group.defect(g), size_of_elements(g), (self.name, "an element of it"))
+        near(name, self._group.defect(g) / self._scale, size_of_elements(g), (self.name, "an element of it"))
         return g
+
+    @property
+    def _scale(self) -> float:
+        """The largest entry of M, which distances from the group are relative to."""
+        form = self._args[3]
+        return 1.0 if form is None else float(np.abs(form).max())
 
     def dexpinv(self, u: ArrayLike, v: ArrayLike, out: Array | None = None, *, q: Whole | None = None) -> Array:
         """Return dexp_u⁻¹(v), the inverse of dexp_u; right-trivialised.
@@ -118,7 +124,9 @@ class Group:
     def ad(self, u: ArrayLike, v: ArrayLike, out: Array | None = None) -> Array:
         """Return ad_u v = uv − vu, shape (..., n, n)."""
         a, b = pair("u", self._algebra("u", u), 2, "v", self._algebra("v", v), 2)
-        return into(self.project(into(a @ b - b @ a, None)), out)  # without the rounding off 𝔤
+        with np.errstate(over="ignore", invalid="ignore"):
+            found = a @ b - b @ a
+        return into(self.project(into(found, None)), out)  # without the rounding off 𝔤
 
     def coad(self, u: ArrayLike, m: ArrayLike, out: Array | None = None) -> Array:
         """Return ad*_u m = uᵀm − muᵀ, with ⟨m, v⟩ = tr(mᵀv), shape (..., n, n).
@@ -130,11 +138,11 @@ class Group:
         return into(a @ b - b @ a, out)
 
     def contains(self, g: Matrices, tol: Real = 1e-12) -> NDArray[np.bool_]:
-        """Return True for each matrix with ‖gᵀMg − M‖ ≤ tol (Frobenius).
+        """Return True for each matrix with ‖gᵀMg − M‖ ≤ tol·max|Mᵢⱼ| (Frobenius).
 
-        On SO(n) det g > 0, too; on SL(n) |det g − 1| ≤ tol or 1e-10; on GL(n) g has an inverse.
+        On SO(n) det g > 0, too, on SO(n, q) det g may be −1; on SL(n) |det g − 1| ≤ tol or 1e-10; on GL(n) g has an inverse.
         """
-        return np.asarray(self._group.defect(g) <= tol)
+        return np.asarray(self._group.defect(g) <= tolerance(tol) * self._scale)
 
     def random(self, size: Whole | Sequence[Whole] | None = None, rng: Any = None) -> Array:
         """Return random elements, shape size + (n, n). On SO(n) they have Haar's measure."""
@@ -142,6 +150,14 @@ class Group:
         seed = int(np.random.default_rng(rng).integers(0, 2**63))
         count = int(np.prod(lead, dtype=int))
         return self._group.random(count, seed).reshape(*lead, self.n, self.n)
+
+
+def tolerance(tol: Any) -> float:
+    """Return a tolerance of membership."""
+    value = number("tol", tol)
+    if not value >= 0:
+        raise ArgumentError("tol", f"{value}", "a number of at least 0")
+    return value
 
 
 def size_of(name: str, n: Any, least: int = 1) -> int:
@@ -152,7 +168,7 @@ def size_of(name: str, n: Any, least: int = 1) -> int:
 
 
 def SO(n: Whole, q: Whole = 0) -> Group:
-    """Return SO(n), gᵀg = 𝟙 and det g = 1; or SO(n, q), gᵀMg = M with M = diag(1, …, −1) and n ones."""
+    """Return SO(n), gᵀg = 𝟙 and det g = 1; or SO(n, q), gᵀMg = M with M = diag(1, …, −1) and n ones; det g may be −1."""
     q = size_of("q", q, 0)
     return Group("so", size_of("n", n, 0 if q else 1), q)
 
@@ -163,7 +179,7 @@ def GL(n: Whole) -> Group:
 
 
 def SL(n: Whole) -> Group:
-    """Return SL(n), the matrices with det g = 1. For n > 2 cay leaves it: det cay(u) is not 1."""
+    """Return SL(n), the matrices with det g = 1. For n > 2 cay leaves it: det cay(u) is not 1, and most g are no cay(u)."""
     return Group("sl", size_of("n", n))
 
 
