@@ -221,3 +221,49 @@ fn isolated(lambda: &Col<c64>, j: usize) -> bool {
     (j == 0 || lambda[j].re - lambda[j - 1].re > gap)
         && (j + 1 == n || lambda[j + 1].re - lambda[j].re > gap)
 }
+
+/// Functions of ad_u for skew-Hermitian X + iY that are stored as real matrices \[X −Y; Y X\].
+///
+/// On so(2n) ad_u has other eigenvalues besides, at which φ may be singular.
+#[derive(Debug)]
+pub(crate) struct ComplexBlocks {
+    eigen: SkewEigen,
+    u: Mat<c64>,
+    v: Mat<c64>,
+}
+
+impl ComplexBlocks {
+    /// Workspace for n×n complex matrices.
+    pub(crate) fn new(n: usize) -> Self {
+        ComplexBlocks { eigen: SkewEigen::new(n), u: Mat::zeros(n, n), v: Mat::zeros(n, n) }
+    }
+
+    /// v ← φ(ad_u) v, as [`SkewEigen::function_of_complex_ad`].
+    pub(crate) fn function_of_ad(
+        &mut self,
+        u: &Mat<f64>,
+        v: &mut Mat<f64>,
+        phi: impl Fn(f64) -> Result<(f64, f64), StepError>,
+    ) -> Result<(), StepError> {
+        let n = self.u.nrows();
+        for (x, z) in [(u, &mut self.u), (&*v, &mut self.v)] {
+            fill(z, |i, j| c64::new(x[(i, j)], x[(n + i, j)]));
+        }
+        self.eigen.function_of_complex_ad(&self.u, &mut self.v, phi)?;
+        for j in 0..n {
+            for i in 0..n {
+                let z = self.v[(i, j)];
+                (v[(i, j)], v[(n + i, n + j)]) = (z.re, z.re);
+                (v[(n + i, j)], v[(i, n + j)]) = (z.im, -z.im);
+            }
+        }
+        Ok(())
+    }
+
+    /// As [`SkewEigen::distance_to_singular`].
+    pub(crate) fn distance_to_singular(&mut self, u: &Mat<f64>) -> Result<f64, StepError> {
+        let n = self.u.nrows();
+        fill(&mut self.u, |i, j| c64::new(u[(i, j)], u[(n + i, j)]));
+        self.eigen.distance_to_singular(&self.u)
+    }
+}

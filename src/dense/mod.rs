@@ -16,7 +16,7 @@ mod symmetric;
 
 pub use crate::error::RCOND_MIN;
 pub(crate) use ad::{AdForm, AdKind, AdSchur, Direction};
-pub(crate) use eigen::SkewEigen;
+pub(crate) use eigen::{ComplexBlocks, SkewEigen};
 pub(crate) use expm::Expm;
 pub use expm::{
     ApplyChoice, Approximant, ComplexExponential, ExpmChoice, Exponential, ExponentialBatch,

@@ -62,6 +62,54 @@ fn references_on_u_n() {
     assert!(choices.iter().any(|choice| matches!(choice, Dexpinv::Series(_))), "{choices:?}");
 }
 
+/// On U(n) as real matrices ad_u has the eigenvalues of u(n), not those of so(2n): u = i(π + ½, π/2 − e) is not singular.
+#[test]
+fn unitary_matrices_as_real_ones() {
+    let mut rng = Pcg64::seed_from_u64(3);
+    for n in 1..=4 {
+        let (real, complex) = (MatrixGroup::u(n).expect("U(n)"), Unitary::new(n).expect("U(n)"));
+        let parts = |x: &AlgebraMatrix| {
+            ComplexMatrix::from_fn(n, n, |i, j| c64::new(x[(i, j)], x[(i + n, j)]))
+        };
+        for size in [0.3, 3.0, 30.0, PI] {
+            for near in [1e-3, 1e-9, 0.0] {
+                let mut u = real.sample_algebra(&mut rng, size);
+                if size == PI {
+                    // Twice π − near: the sum is beside 2π, the difference is 0.
+                    u = real.zero();
+                    let v = real.sample_algebra(&mut rng, 1.0);
+                    let angles = |j: usize| PI - near + if j == 0 { 0.5 } else { -0.5 };
+                    let diagonal = Mat::from_fn(2 * n, 2 * n, |i, j| match (i < n, j < n) {
+                        (false, true) if i == j + n => angles(j),
+                        (true, false) if j == i + n => -angles(i),
+                        _ => 0.0,
+                    });
+                    let q = Exp.eval(&real, &v).expect("exp");
+                    let turned = &*q * diagonal * q.transpose();
+                    real.axpy(1.0, &real.project_algebra(turned.as_ref()), &mut u);
+                }
+                let v = real.sample_algebra(&mut rng, 1.0);
+                let (mut at, mut w) = (Exp.at(&real).expect("exp"), v.clone());
+                let by_real = Exp.dpsi_inv(&real, &u, &mut at, &mut w);
+                let (mut at, mut exact) = (Exp.at(&complex).expect("exp"), parts(&v));
+                let by_complex = Exp.dpsi_inv(&complex, &parts(&u), &mut at, &mut exact);
+                let far = at.distance_to_singular(&parts(&u)).expect("a spectrum");
+                let same = distance_to_singular(&real, &u).expect("a spectrum");
+                assert!((far - same).abs() < 1e-12 * (1.0 + size), "{n} {size}: {far} {same}");
+                assert_eq!(by_real.is_ok(), by_complex.is_ok(), "{n}, {size}, {near}");
+                if by_real.is_ok() {
+                    let off = complex.distance(&parts(&w), &exact) / complex.norm(&exact);
+                    assert!(off < 1e-13 * (1.0 + 1.0 / far), "{n}, {size}, {near}: {off:e}");
+                    assert!(real.algebra(w.clone().into_mat()).is_ok(), "{n}, {size}, {near}");
+                }
+                if size == PI {
+                    assert!(by_real.is_ok(), "{n}, {near}");
+                }
+            }
+        }
+    }
+}
+
 /// Random u on every group, both ways round: dexp then dexp⁻¹, at all sizes, every branch visited.
 #[test]
 fn inverse_of_each_other() {
@@ -75,6 +123,8 @@ fn inverse_of_each_other() {
         unitary(2),
         MatrixGroup::gl(1),
         MatrixGroup::sp(2),
+        MatrixGroup::u(3),
+        MatrixGroup::su(2),
         // Neither symmetric nor skew, and its symmetric part is singular.
         MatrixGroup::gm(faer::mat![[1.0, 2.0], [-2.0, 0.0]]),
     ] {

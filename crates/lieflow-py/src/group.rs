@@ -134,7 +134,10 @@ impl MatrixGroup {
             ("sp", _) => Group::sp(n),
             ("gl", _) => Group::gl(n),
             ("sl", _) => Group::sl(n),
-            _ => return Err(argument(py, "family", family, "so, sp, gl, sl, or gm with a form")),
+            ("u", _) => Group::u(n),
+            _ => {
+                return Err(argument(py, "family", family, "so, sp, gl, sl, u, or gm with a form"));
+            }
         };
         group.map(MatrixGroup).map_err(|error| refused(py, "n", &error))
     }

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import scipy.integrate
 import scipy.linalg
+from numpy.testing import assert_allclose
 
 import lieflow as lf
 
@@ -58,7 +59,7 @@ def test_what_is_not_in_it_is_named(pair):
     bad[3, 0, 0] = 1.0
     for make, argument in ((lambda: group.exp(bad), "u[3]"), (lambda: group.cay(bad), "u[3]"),
                            (lambda: group.log(bad), "g[0]"), (lambda: group.exp(np.eye(2)), "u"),
-                           (lambda: group.log(-np.eye(3)), "g"), (lambda: lf.U(0), "n"),
+                           (lambda: group.cay_inv(-np.eye(3)), "g"), (lambda: lf.U(0), "n"),
                            (lambda: group.exp(np.full((N, N), np.nan)), "u")):
         with pytest.raises(lf.ArgumentError) as caught:
             make()
@@ -383,3 +384,36 @@ def test_matrices_in_single_precision_are_taken(pair):
         with pytest.raises(lf.ArgumentError) as caught:
             call()
         assert str(caught.value).startswith(words), str(caught.value)
+
+
+def test_maps_of_u_n_do_not_depend_on_a_phase(rng):
+    """u + i·phase·1 has the dexp⁻¹ of u: the singular set is that of u(n), not that of so(2n)."""
+    n, group = 3, lf.U(3)
+    u, v = (group.project(rng.standard_normal((n, n)) + 1j * rng.standard_normal((n, n))) for _ in range(2))
+    expected = group.dexpinv(u, v)
+    for phase in [np.pi - np.linalg.eigvals(u).imag[0], np.pi, 2 * np.pi, 30.0]:
+        assert_allclose(group.dexpinv(u + 1j * phase * np.eye(n), v), expected, rtol=0, atol=1e-12)
+    start, settings = np.eye(2, dtype=complex), {"group": "U(2)", "frame": "space", "steps": 8, "method": "rkmk4 exp"}
+    field = lambda t, y: 0.3j * np.array([[np.sin(t), 1.0], [1.0, -t]])  # noqa: E731
+    plain = lf.solve_ivp(field, (0, 4), start, **settings)
+    for energy in [np.pi, 2 * np.pi]:
+        turned = lf.solve_ivp(lambda t, y: field(t, y) + 1j * energy * np.eye(2), (0, 4), start, **settings)  # noqa: B023
+        assert_allclose(turned.y_end, plain.y_end * np.exp(4j * energy), rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("d", [1e-3, 1e-6, 1e-9, 1e-13, 0.0])
+def test_log_of_u_n_beside_a_half_turn(rng, d):
+    q = lf.U(3).random(rng=rng)
+    angles = np.array([np.pi - d, np.pi - 2 * d, 1.0])
+    u = lf.U(3).log(q @ np.diag(np.exp(1j * angles)) @ q.conj().T)
+    found = np.sort(np.linalg.eigvals(u).imag)
+    assert_allclose(np.abs(found), np.sort(np.abs(angles)), rtol=0, atol=1e-13)
+    assert_allclose(lf.U(3).exp(u), q @ np.diag(np.exp(1j * angles)) @ q.conj().T, rtol=0, atol=1e-13)
+
+
+def test_every_minus_one_has_a_logarithm():
+    for n in (1, 2, 3, 4):
+        assert_allclose(np.abs(np.linalg.eigvals(lf.U(n).log(-np.eye(n)))), np.pi, rtol=1e-14)
+        with pytest.raises(lf.ArgumentError, match="an eigenvalue −1") as refused:
+            lf.U(n).cay_inv(-np.eye(n))
+        assert refused.value.argument == "g"

@@ -20,21 +20,6 @@ impl MatrixGroup {
         Mat::from_fn(self.n, self.n, |i, j| self.block(x, i, j))
     }
 
-    /// x ← the nearest matrix \[X −Y; Y X\] on U(n) and SU(n). Elsewhere x stays as it is.
-    pub(crate) fn keep_complex(&self, x: &mut Mat<f64>) {
-        if !self.is_complex() {
-            return;
-        }
-        let m = self.n / 2;
-        for j in 0..m {
-            for i in 0..self.n {
-                let mean = self.block(x.as_ref(), i, j);
-                let (k, sign) = if i < m { (i + m, 1.0) } else { (i - m, -1.0) };
-                (x[(i, j)], x[(k, j + m)]) = (mean, sign * mean);
-            }
-        }
-    }
-
     /// An entry of [`blocks`](Self::blocks).
     pub(super) fn block(&self, x: MatRef<'_, f64>, i: usize, j: usize) -> f64 {
         let m = self.n / 2;

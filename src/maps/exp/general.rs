@@ -4,7 +4,9 @@ use super::powers::{
     DIVERGES, Dexpinv, EXACT_FROM, Powers, SINGULAR, SINGULAR_AT, finite, phi, phi1,
 };
 use super::{Exp, TruncatedExp};
-use crate::dense::{AdSchur, Direction, Expm, ExpmChoice, SkewEigen, Structure, scaled_sum};
+use crate::dense::{
+    AdSchur, ComplexBlocks, Direction, Expm, ExpmChoice, SkewEigen, Structure, scaled_sum,
+};
 use crate::error::{Error, StepError};
 use crate::groups::{AlgebraMatrix, Form, GroupMatrix, LieAlgebra, MatrixGroup};
 use crate::maps::CoordinateMap;
@@ -31,6 +33,8 @@ enum Exact {
     None,
     /// Every u of the algebra is skew.
     Eigen(Box<SkewEigen>),
+    /// Every u is a skew-Hermitian matrix as a real one.
+    Complex(Box<ComplexBlocks>),
     Schur(Box<AdSchur>),
 }
 
@@ -62,6 +66,9 @@ impl ExpAt {
         u: &AlgebraMatrix,
     ) -> Result<f64, StepError> {
         group.operand("u in dexp_u", u)?;
+        if group.is_complex() {
+            return ComplexBlocks::new(group.n() / 2).distance_to_singular(u);
+        }
         let make = || Box::new(AdSchur::new(group.n(), group.ad_form()));
         let schur = self.spectrum.get_or_insert_with(make);
         schur.factor(u)?;
@@ -76,6 +83,9 @@ impl ExpAt {
             scaled: group.zero(),
             exact: match exact {
                 false => Exact::None,
+                true if group.is_complex() => {
+                    Exact::Complex(Box::new(ComplexBlocks::new(group.n() / 2)))
+                }
                 true if group.is_skew() => Exact::Eigen(Box::new(SkewEigen::new(n))),
                 true => Exact::Schur(Box::new(AdSchur::new(n, group.ad_form()))),
             },
@@ -140,7 +150,11 @@ impl ExpAt {
             Exact::Eigen(eigen) => {
                 self.dexpinv = Dexpinv::Eigen;
                 eigen.function_of_ad(u, v, |theta| phi(theta, norm))?;
-                group.keep_complex(v);
+                finite(group, v, "dexp⁻¹")
+            }
+            Exact::Complex(eigen) => {
+                self.dexpinv = Dexpinv::Eigen;
+                eigen.function_of_ad(u, v, |theta| phi(theta, norm))?;
                 finite(group, v, "dexp⁻¹")
             }
             Exact::Schur(schur) => {
@@ -175,11 +189,8 @@ impl ExpAt {
         }
         match &mut self.exact {
             Exact::None => Err(DIVERGES),
-            Exact::Eigen(eigen) => {
-                eigen.function_of_ad(u, v, |theta| Ok(phi1(theta)))?;
-                group.keep_complex(v);
-                Ok(())
-            }
+            Exact::Eigen(eigen) => eigen.function_of_ad(u, v, |theta| Ok(phi1(theta))),
+            Exact::Complex(eigen) => eigen.function_of_ad(u, v, |theta| Ok(phi1(theta))),
             Exact::Schur(schur) => {
                 let s = scale_down(u, norm, &mut self.scaled);
                 self.powers.ad.copy_from(&**v);
