@@ -219,6 +219,12 @@ pub enum NoLogarithm {
         "a real logarithm, if there is one, is not principal; it is not computed where the eigenvalue is defective or M neither symmetric nor skew"
     )]
     Undecided,
+    /// The eigenvalue is on the negative axis or beside it, and so near to another one that rounding does not tell them apart:
+    /// no digit of a logarithm is right.
+    #[error(
+        "it is so near to another one, or to the negative real axis, that rounding leaves the logarithm no digits"
+    )]
+    NoDigits,
 }
 
 impl Error {

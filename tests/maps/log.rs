@@ -277,6 +277,45 @@ fn hard_matrices() {
     assert!((u[(1, 0)] / 1e-200 - 1.0).abs() < 1e-15 && (u[(2, 3)] / 3e-310 - 1.0).abs() < 1e-12);
 }
 
+/// Beside the negative axis an eigenvalue and its conjugate are one up to rounding. What is returned is a logarithm of g.
+#[test]
+fn what_has_no_digits_is_refused() {
+    let exact = |group: &MatrixGroup, g: Mat<f64>, what: &str| {
+        let g = group.element(g).unwrap_or_else(|error| panic!("{what}: {error}"));
+        match group.log(&g) {
+            Ok(u) => {
+                let gap = (&*exp(group, &u) - &*g).norm_l2() / g.norm_l2();
+                assert!(gap < 1e-7, "{what}: {gap:e}");
+                true
+            }
+            Err(Error::NoLogarithm { why, .. }) => {
+                assert!(why != NoLogarithm::Odd || what.contains("alone"), "{what}: {why}");
+                false
+            }
+            Err(error) => panic!("{what}: {error}"),
+        }
+    };
+    let (sl, gl) = (MatrixGroup::sl(2).unwrap(), MatrixGroup::gl(6).unwrap());
+    let mut found = [0, 0];
+    for k in 1..=16 {
+        let d = 10f64.powi(-k);
+        // A turn by π − d in sheared axes.
+        let (c, s) = ((PI - d).cos(), (PI - d).sin());
+        let g = Mat::from_fn(2, 2, |i, j| [[c - 0.5 * s, -1.25 * s], [s, c + 0.5 * s]][i][j]);
+        found[usize::from(exact(&sl, g, &format!("a turn by π − {d}")))] += 1;
+        // Symmetric, with two pairs of negative eigenvalues beside each other.
+        let values = [-1.0, -1.0, -1.0 - d, -1.0 - d, 5.0, 5.0];
+        let mut rng = Pcg64::seed_from_u64(k as u64);
+        let so = MatrixGroup::so(6).unwrap();
+        let q = exp(&so, &so.sample_algebra(&mut rng, 2.0));
+        let diagonal = Mat::from_fn(6, 6, |i, j| if i == j { values[i] } else { 0.0 });
+        let g = &*q * diagonal * q.transpose();
+        found[usize::from(exact(&gl, g, &format!("pairs {d} apart")))] += 1;
+    }
+    // Both happen.
+    assert!(found[0] > 3 && found[1] > 15, "{found:?}");
+}
+
 /// On SU(n) the angles of the eigenvalues may have another sum than 0, and then some are taken a turn farther. On U(n) the
 /// eigenvalue −1 may be repeated.
 #[test]

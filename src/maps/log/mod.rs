@@ -106,6 +106,9 @@ impl MatrixGroup {
             |z: c64, why| Error::NoLogarithm { group: self.name(), re: z.re, im: z.im, why };
         let negative = match triangular::log(g)? {
             Ok(u) => return Ok(u),
+            Err(Negative { eigenvalues, has_no_digits: true, .. }) => {
+                return Err(refuse(eigenvalues[0], NoLogarithm::NoDigits));
+            }
             Err(negative) => negative,
         };
         let (rest, turn) = half_turns::apart(g, self.ad_form().as_ref(), &negative)
@@ -115,7 +118,16 @@ impl MatrixGroup {
             return Err(refuse(negative.eigenvalues[0], NoLogarithm::Undecided));
         }
         match triangular::log(&rest)? {
-            Ok(u) => Ok(u + turn),
+            Ok(u) => {
+                let u = u + turn;
+                match triangular::is_log(&u, g)? {
+                    true => Ok(u),
+                    false => Err(refuse(negative.eigenvalues[0], NoLogarithm::NoDigits)),
+                }
+            }
+            Err(Negative { eigenvalues, has_no_digits: true, .. }) => {
+                Err(refuse(eigenvalues[0], NoLogarithm::NoDigits))
+            }
             Err(Negative { eigenvalues, .. }) => {
                 Err(refuse(eigenvalues[0], NoLogarithm::Undecided))
             }

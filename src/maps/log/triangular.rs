@@ -3,18 +3,24 @@
 use faer::{Mat, c64};
 
 use super::THETA;
-use crate::dense::Schur;
+use crate::dense::{Expm, Schur, Structure, norm1};
 use crate::error::{Error, StepError};
 use crate::quadrature::GAUSS_LEGENDRE7;
 
 /// Square roots halve the logarithm; 1100 halvings take the range of doubles to rounding.
 const ROOTS_MAX: u32 = 1100;
 
+/// A computed logarithm whose exponential is this far from g, relative to g, has no digits.
+const NO_DIGITS: f64 = 1e-8;
+
 /// Eigenvalues on the negative real axis: for them there is no principal logarithm.
 pub(super) struct Negative {
     pub(super) eigenvalues: Vec<c64>,
     /// How far from the axis they may be by rounding.
     pub(super) margin: f64,
+    /// True of one eigenvalue beside the axis: a computed logarithm is none of g. An eigenvalue and its conjugate are one
+    /// there, up to rounding.
+    pub(super) has_no_digits: bool,
 }
 
 /// The principal logarithm of a real g, if it has one.
@@ -32,7 +38,7 @@ pub(super) fn log(g: &Mat<f64>) -> Result<Result<Mat<f64>, Negative>, Error> {
     let on_axis = |z: &&c64| z.re <= 0.0 && z.im.abs() <= margin;
     if eigenvalues.iter().any(|z| on_axis(&z)) {
         let eigenvalues = eigenvalues.iter().filter(on_axis).copied().collect();
-        return Ok(Err(Negative { eigenvalues, margin }));
+        return Ok(Err(Negative { eigenvalues, margin, has_no_digits: false }));
     }
     let mut roots = 0;
     while distance_to_identity(&t) > THETA {
@@ -54,7 +60,21 @@ pub(super) fn log(g: &Mat<f64>) -> Result<Result<Mat<f64>, Negative>, Error> {
         l[(j, j)] = eigenvalues[j].ln();
     }
     let full = &q * &l * q.adjoint();
-    Ok(Ok(Mat::from_fn(n, n, |i, j| full[(i, j)].re)))
+    let u = Mat::from_fn(n, n, |i, j| full[(i, j)].re);
+    if is_log(&u, g)? {
+        return Ok(Ok(u));
+    }
+    let nearest = eigenvalues.into_iter().max_by(|a, b| a.arg().abs().total_cmp(&b.arg().abs()));
+    let eigenvalues = nearest.into_iter().collect();
+    Ok(Err(Negative { eigenvalues, margin, has_no_digits: true }))
+}
+
+/// True if exp(u) is g, to [`NO_DIGITS`].
+pub(super) fn is_log(u: &Mat<f64>, g: &Mat<f64>) -> Result<bool, Error> {
+    let (n, mut found) = (g.nrows(), g.clone());
+    Expm::new(n).exp(u, Structure::General, &mut found)?;
+    let far = found - g;
+    Ok(norm1(far.as_ref()) <= NO_DIGITS * norm1(g.as_ref()))
 }
 
 /// ‖t − 𝟙‖₁ for upper triangular t; NaN counts as near, and the result is checked for it.
