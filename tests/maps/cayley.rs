@@ -121,6 +121,14 @@ fn inverse_map() {
     }
     let small = GroupMatrix::new_unchecked(Mat::identity(2, 2));
     assert!(cay_inv(&MatrixGroup::gl(3).expect("GL(3)"), &small).is_err());
+    // On SL(3) most g are no cay(u) of a u without trace.
+    let sl = MatrixGroup::sl(3).expect("SL(3)");
+    let diagonal = |x: [f64; 3]| {
+        let g = Mat::from_fn(3, 3, |i, j| if i == j { x[i] } else { 0.0 });
+        cay_inv(&sl, &sl.element(g).expect("an element"))
+    };
+    assert!(matches!(diagonal([2.0, 2.0, 0.25]), Err(Error::Trace { .. })));
+    assert!(diagonal([2.0, 1.0, 0.5]).is_ok() && diagonal([1.0; 3]).is_ok());
 }
 
 /// dcay is the inverse of dcay⁻¹, and the derivative of cay by a central difference.

@@ -132,6 +132,8 @@ impl MatrixGroup {
 
     /// SO(p,q): M = diag(1, …, 1, −1, …, −1) with p ones. SO(3,1) is the Lorentz group.
     ///
+    /// The sign of the determinant is not checked: an element of O(p,q) is taken, and a run keeps its component.
+    ///
     /// # Errors
     /// [`Error::OutOfRange`] for p + q = 0 or p + q > 32768.
     pub fn indefinite(p: usize, q: usize) -> Result<Self, Error> {

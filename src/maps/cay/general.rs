@@ -5,7 +5,7 @@ use faer::Mat;
 use super::{Cay, CayleyGroup};
 use crate::dense::{Lu, norm_frobenius, scaled_sum};
 use crate::error::{Error, RCOND_MIN, StepError};
-use crate::groups::{AlgebraMatrix, Form, GroupMatrix, MatrixGroup};
+use crate::groups::{AlgebraMatrix, Form, GroupMatrix, LieAlgebra, MatrixGroup};
 use crate::maps::CoordinateMap;
 use crate::maps::quotient::{Quotient, finite, well_conditioned};
 
@@ -37,6 +37,9 @@ impl CayAt {
 
 /// Above this norm of a skew u no digit of cay(u) has a meaning in the dense arithmetic.
 const NORM_MAX_SKEW: f64 = 1e15;
+
+/// The trace of u on SL(n), relative to ‖u‖, that counts as rounding. For n > 2 most g are no cay(u) of a u ∈ sl(n).
+const OFF_TRACE: f64 = 1e-10;
 
 impl CoordinateMap<MatrixGroup> for Cay {
     type At = CayAt;
@@ -100,10 +103,22 @@ impl CayleyGroup for MatrixGroup {
         for x in u.col_iter_mut() {
             x.iter_mut().for_each(|x| *x *= 2.0);
         }
-        Ok(match self.form() {
-            Form::Free => AlgebraMatrix::new_unchecked(u),
-            _ => self.project_algebra(u.as_ref()),
-        })
+        match self.form() {
+            Form::Free if self.is_special() => {
+                let trace: f64 = (0..n).map(|i| u[(i, i)]).sum();
+                let size = norm_frobenius(&u);
+                match trace.abs() <= OFF_TRACE * size.max(f64::MIN_POSITIVE) {
+                    true => Ok(self.project_algebra(u.as_ref())),
+                    false => Err(Error::Trace {
+                        arg: "cay⁻¹(g)",
+                        group: self.name(),
+                        distance: trace.abs(),
+                    }),
+                }
+            }
+            Form::Free => Ok(AlgebraMatrix::new_unchecked(u)),
+            _ => Ok(self.project_algebra(u.as_ref())),
+        }
     }
 
     fn dcay(&self, u: &AlgebraMatrix, v: &AlgebraMatrix) -> Result<AlgebraMatrix, Error> {
