@@ -219,10 +219,10 @@ pub struct PlotArgs {
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub columns: Vec<String>,
     /// From this time on.
-    #[arg(long, value_name = "T", allow_negative_numbers = true)]
+    #[arg(long, value_name = "T", allow_hyphen_values = true)]
     pub from: Option<f64>,
     /// Up to this time.
-    #[arg(long, value_name = "T", allow_negative_numbers = true)]
+    #[arg(long, value_name = "T", allow_hyphen_values = true)]
     pub to: Option<f64>,
     /// Folder for the page.
     #[arg(long, value_name = "DIR", default_value = "lieflow-plot")]

@@ -162,6 +162,8 @@ struct Stated {
     units: BTreeMap<String, String>,
     #[serde(default)]
     completed: bool,
+    /// The file of its rows.
+    trajectory: Option<String>,
 }
 
 /// What the summary of a run states. A folder without a summary has the rows of a run that did not end.
@@ -178,8 +180,11 @@ fn stated(folder: &Path) -> Result<Stated, CliError> {
 
 /// The rows of a run between two times.
 fn read(folder: &Path, name: String, args: &PlotArgs) -> Result<Written, CliError> {
-    let paths = TRAJECTORY.map(|file| folder.join(file));
-    let Some(path) = paths.iter().find(|path| path.exists()) else {
+    let Stated { units, completed, trajectory } = stated(folder)?;
+    // A folder may have the rows of a complete run and those of a later one, which has no summary where it was killed.
+    let [complete, later] = TRAJECTORY.map(|file| folder.join(file));
+    let paths = [trajectory.map(|file| folder.join(file)), Some(later), Some(complete)];
+    let Some(path) = &paths.into_iter().flatten().find(|path| path.exists()) else {
         let has = if folder.join(SUMMARY).exists() { "rows" } else { "run" };
         let message =
             format!("there is no {has} in `{}`: {} is missing", folder.display(), TRAJECTORY[0]);
@@ -203,7 +208,6 @@ fn read(folder: &Path, name: String, args: &PlotArgs) -> Result<Written, CliErro
     let (mut rows, mut values, mut last) = (Sample::default(), Vec::new(), f64::NAN);
     let within =
         |t: f64| args.from.is_none_or(|from| t >= from) && args.to.is_none_or(|to| t <= to);
-    let Stated { units, completed } = stated(folder)?;
     let mut number = 1;
     while let Some(line) = next()? {
         number += 1;
@@ -229,7 +233,14 @@ fn read(folder: &Path, name: String, args: &PlotArgs) -> Result<Written, CliErro
         return Err(CliError::Message(format!("{} has no rows at these times", path.display())));
     }
     if !completed {
-        eprintln!("note: `{name}` is a run that is not complete: its rows end at t = {last}");
+        let before = folder.join(TRAJECTORY[0]);
+        let other = match before.exists() && before != *path {
+            true => format!("; {} is that of a run before", before.display()),
+            false => String::new(),
+        };
+        eprintln!(
+            "note: `{name}` is a run that is not complete: its rows end at t = {last}{other}"
+        );
     }
     Ok(Written { name, columns, units, rows })
 }

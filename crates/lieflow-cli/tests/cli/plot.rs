@@ -162,6 +162,72 @@ fn a_run_that_is_not_complete_is_told() {
     assert!(refused.contains("trajectory.partial.csv:3: 1 numbers, expected 2"), "{refused}");
 }
 
+/// The rows of a run that did not end are drawn, not those of a complete run before it in the same folder.
+#[test]
+fn rows_of_a_run_before_are_not_drawn() {
+    let folder = Folder::new();
+    let rows = |from: f64| format!("t,a\n0,{from}\n1,{}\n", from + 1.0);
+    folder.write("out/trajectory.csv", &rows(1.0));
+    folder.write("out/trajectory.partial.csv", &rows(5.0));
+    for summary in [
+        None,
+        Some(r#"{"completed": false, "trajectory": "trajectory.partial.csv"}"#),
+        Some(r#"{"completed": true, "trajectory": "trajectory.csv"}"#),
+    ] {
+        summary.iter().for_each(|summary| folder.write("out/summary.json", summary));
+        let run = folder.lieflow(&["plot", "out", "--out", "figures"]);
+        let is_complete = summary.is_some_and(|summary| summary.contains("true"));
+        let other = "; out/trajectory.csv is that of a run before";
+        assert_eq!((run.code, run.err.contains(other)), (Some(0), !is_complete), "{run:?}");
+        let least = if is_complete { "9.6e-1 2.04e0" } else { "4.96e0 6.04e0" };
+        let figure = folder.read("figures/plot-1.svg");
+        assert!(figure.contains(&format!("data-y=\"linear {least} ")), "{summary:?}: {figure}");
+    }
+}
+
+/// A value that is not finite hides neither its own curve nor another one.
+#[test]
+fn a_row_that_is_not_finite_does_not_hide_the_others() {
+    let folder = Folder::new();
+    let rows = |t: f64| match t {
+        0.0 => "0,inf,0.2,NaN\n".into(),
+        t => format!("{t},{},{},{}\n", 1.0 / t, t.sin(), t.cos()),
+    };
+    let text: String = (0..100).map(|i| rows(0.1 * f64::from(i))).collect();
+    folder.write("out/trajectory.csv", &format!("t,qa1,qa2,root\n{text}"));
+    folder.lieflow(&["plot", "out", "--out", "figures"]).ok();
+    assert!(!folder.read("figures/index.html").contains("stay as they are"));
+    let [both, root] = ["1", "2"].map(|k| folder.read(&format!("figures/plot-{k}.svg")));
+    assert!(both.contains("data-series=\"qa₁\"") && both.contains("data-series=\"qa₂\""), "{both}");
+    assert!(root.contains("99 points") && !root.contains("no data"), "{root}");
+    // In a run, a formula without a value at the start is drawn as it is.
+    let formulas = "[output.formulas]\nroot = \"sqrt(m2 - 0.1)\"\ninverse = \"0.01/m2\"\n";
+    folder.write("scene.toml", &(SCENE.to_owned() + formulas));
+    folder.lieflow(&["run", "scene.toml", "--out", "run"]).ok();
+    let page = folder.read("run/index.html");
+    assert!(!page.contains("There is no data to draw") && !page.contains("∞"));
+    assert!(page.contains("data-series=\"root\"") && page.contains("data-series=\"inverse\""));
+}
+
+/// What stays as it is has its own name, also where other columns of its quantity vary or are not drawn.
+#[test]
+fn constants_have_the_names_of_their_columns() {
+    let folder = Folder::new();
+    let text = "[problem]\nkind = \"rigid-body\"\ninertia = [1, 1, 3]\nomega_body = [0.2, 0, 1]\n\
+                [time]\nt_span = [0, 40]\n\
+                [output]\nquantities = [\"momentum_body\"]\nplot = [\"m3\", \"b\", \"c\"]\n\
+                [output.formulas]\nb = \"m3/3\"\nc = \"2*m3\"\nd = \"m1*m1\"\n";
+    folder.write("scene.toml", text);
+    folder.lieflow(&["run", "scene.toml", "--out", "run"]).ok();
+    let page = folder.read("run/index.html");
+    let constants = page.split("stay as they are at the start").nth(1).expect("constants");
+    let constants = constants.split("</section>").next().unwrap_or_default();
+    for name in [">Angular momentum in the body: m₃<", ">b<", ">c<"] {
+        assert!(constants.contains(name), "{name}: {constants}");
+    }
+    assert!(!constants.contains("b, c, d"), "{constants}");
+}
+
 /// A name stands for all of its numbers, also where a matrix has more than nine rows; `l1` is its first row.
 #[test]
 fn entries_of_large_matrices_are_drawn_by_their_name() {

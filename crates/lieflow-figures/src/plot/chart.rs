@@ -3,7 +3,7 @@
 use super::labels::{self, ROW};
 use super::scale::{Axis, Map, Scale, Tick};
 use super::series::{Marker, Point, Series};
-use super::svg::{Opening, escape, polyline, px, slug, text, text_width};
+use super::svg::{Opening, escape, polyline, px, ring, slug, text, text_width};
 use super::theme;
 use super::trace::{Trace, omission};
 
@@ -238,7 +238,11 @@ impl Chart {
     fn draw_line(&self, out: &mut String, index: usize, trace: &Trace, x: &Map, y: &Map) {
         let series = &self.series[index];
         out.push_str(&format!("<g class=\"lf-s {}\" data-line=\"{index}\">", series.classes()));
-        let d: String = trace.runs.iter().map(|run| polyline(run)).collect();
+        let path = |run: &Vec<(f64, f64)>| match &run[..] {
+            [only] if series.marker == Marker::None => ring(*only),
+            run => polyline(run),
+        };
+        let d: String = trace.runs.iter().map(path).collect();
         if series.marker == Marker::None {
             out.push_str(&format!(
                 "<path class=\"lf-line lf-dense\" tabindex=\"-1\" data-series=\"{}\" \

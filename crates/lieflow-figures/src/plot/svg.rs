@@ -12,6 +12,7 @@ pub(crate) fn escape(text: &str) -> String {
             '"' => out.push_str("&quot;"),
             '\'' => out.push_str("&#39;"),
             '\n' | '\t' => out.push(c),
+            '\u{fffe}' | '\u{ffff}' => out.push(' '),
             c if c.is_control() => out.push(' '),
             c => out.push(c),
         }
@@ -86,6 +87,11 @@ pub(crate) fn polyline(points: &[(f64, f64)]) -> String {
         [only] => format!("M{only}h0"),
         [first, rest @ ..] => format!("M{first}L{}", rest.join(" ")),
     }
+}
+
+/// A small ring around a place: the path of a dense line of one point.
+pub(crate) fn ring((x, y): (f64, f64)) -> String {
+    format!("M{} {}a1.5 1.5 0 1 0 3 0a1.5 1.5 0 1 0-3 0", px(x - 1.5), px(y))
 }
 
 /// The head of an arrow with its tip at these pixels, which points to the direction (right, up) of the view: a unit vector

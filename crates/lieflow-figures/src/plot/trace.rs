@@ -50,6 +50,7 @@ pub(crate) fn omission(axis: &Axis, map: &Map, value: f64) -> Option<String> {
         None if value.is_finite() && value < 0.0 && axis.scale == Scale::Log10 => {
             Some(format!("with negative {quantity}"))
         }
+        None if value.is_finite() => Some(format!("with {quantity} too large to draw")),
         None => Some(format!("with {quantity} not finite")),
     }
 }

@@ -82,7 +82,8 @@ pub(super) fn against_time(
         Drawn::Constant(_, value) => Some(value.as_str()),
         _ => None,
     });
-    if let Some(values) = values.collect::<Option<Vec<_>>>() {
+    let is_whole = quantity.columns.iter().all(|name| is_wanted(quantity, wanted, name));
+    if is_whole && let Some(values) = values.collect::<Option<Vec<_>>>() {
         return vec![Drawn::Constant(words::title(kind, quantity), values.join(", "))];
     }
     let closed = figures.split_off(figures.len().min(OPEN));
@@ -131,6 +132,11 @@ pub(super) fn in_rows(figures: Vec<Drawn>) -> Vec<Block> {
     blocks
 }
 
+/// True if a column of a quantity is drawn: all are where none is named.
+fn is_wanted(quantity: &Observable, wanted: &[String], column: &str) -> bool {
+    wanted.is_empty() || wanted.iter().any(|name| name == column || name == quantity.name)
+}
+
 /// The columns that belong together: all of a few, the parts of a composed system, or those of one name; those with
 /// the fewest columns first.
 fn parts_of<'a>(
@@ -148,9 +154,7 @@ fn parts_of<'a>(
         columns: columns.iter().map(|&index| Column { quantity, index }).collect(),
         as_they_are: false,
     };
-    let is_wanted = |i: &usize| {
-        wanted.is_empty() || wanted.iter().any(|name| *name == names[*i] || name == quantity.name)
-    };
+    let is_wanted = |i: &usize| is_wanted(quantity, wanted, &names[*i]);
     let all: Vec<usize> = (0..names.len()).filter(is_wanted).collect();
     let of_formulas = kind.quantity(quantity.name).is_err();
     let title = || words::title(kind, quantity);
@@ -175,6 +179,9 @@ fn parts_of<'a>(
             shown(title, axis, columns)
         };
         (1..).zip(&groups).map(group).collect()
+    } else if all.len() < names.len() {
+        let named: Vec<String> = all.iter().map(|i| words::column(&names[*i])).collect();
+        vec![shown(format!("{}: {}", title(), named.join(", ")), words::on_axis(quantity), &all)]
     } else {
         vec![shown(title(), words::on_axis(quantity), &all)]
     };
@@ -226,9 +233,10 @@ fn sizes(columns: &[Column<'_>], rows: &RowSample<'_>) -> Vec<f64> {
         let of_group = quantity.law.is_some_and(|law| law.scale == Scale::One);
         let least = if of_group { 1.0 } else { 0.0 };
         sizes.push(rows.columns().fold(least, |size, (_, row)| {
-            // Without terms it is NaN, which `max` passes over.
-            let size = size.max(row.terms(quantity));
-            row[quantity][part.clone()].iter().fold(size, |size: f64, x| size.max(x.abs()))
+            // Without terms it is NaN.
+            let terms = row.terms(quantity);
+            let values = row[quantity][part.clone()].iter().map(|x| x.abs()).chain([terms]);
+            values.filter(|x| x.is_finite()).fold(size, f64::max)
         }));
     }
     sizes
@@ -260,7 +268,9 @@ pub(super) fn figure(
     let start = |curve: &Curve| curve.whole.first().map_or(0.0, |point| point.1);
     let change = |curve: &Curve| {
         let start = start(curve);
-        curve.whole.iter().fold(0.0, |change: f64, (_, x)| change.max((x - start).abs()))
+        let changes = curve.whole.iter().map(|(_, x)| (x - start).abs());
+        // From a start that is not finite there is no change to draw.
+        if start.is_finite() { changes.fold(0.0, f64::max) } else { f64::INFINITY }
     };
     let changes = curves.iter().map(change).fold(0.0, f64::max);
     let size = sizes.iter().copied().fold(0.0, f64::max);

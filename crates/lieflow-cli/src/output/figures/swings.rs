@@ -69,7 +69,8 @@ pub(super) fn constants(curves: &mut [Curve], rounding: f64) -> Option<Vec<Strin
     let mut values = Vec::new();
     for Curve { whole, first, size, .. } in curves.iter_mut() {
         let Some(&(_, start)) = whole.first() else { continue };
-        if height_of(&*whole) <= rounding * *size {
+        let is_finite = whole.iter().all(|point| point.1.is_finite());
+        if is_finite && height_of(&*whole) <= rounding * *size {
             whole.iter_mut().chain(first).for_each(|point| point.1 = start);
             values.push(short(start, 6));
         }
@@ -156,7 +157,7 @@ impl Line {
 
 /// The highest minus the lowest. NaN is ignored.
 fn height_of<'a>(points: impl IntoIterator<Item = &'a (f64, f64)>) -> f64 {
-    let values = points.into_iter().map(|point| point.1).filter(|x| !x.is_nan());
+    let values = points.into_iter().map(|point| point.1).filter(|x| x.is_finite());
     let none = (f64::INFINITY, f64::NEG_INFINITY);
     let (low, high) = values.fold(none, |(low, high), x| (low.min(x), high.max(x)));
     (high - low).max(0.0)

@@ -56,7 +56,8 @@ impl Written {
 
     fn curve(&self, name: String, column: &str) -> Curve {
         let whole = self.points(column, self.rows.columns());
-        let size = whole.iter().map(|point| point.1.abs()).fold(0.0, f64::max);
+        let sizes = whole.iter().map(|point| point.1.abs()).filter(|size| size.is_finite());
+        let size = sizes.fold(0.0, f64::max);
         Curve { name, whole, first: self.points(column, self.rows.first()), size }
     }
 }
