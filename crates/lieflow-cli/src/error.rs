@@ -40,7 +40,7 @@ pub enum CliError {
     /// The program cannot listen to signals.
     #[error("cannot listen to signals: {0}")]
     Signals(io::Error),
-    /// A run stopped, and can go on.
+    /// A run stopped, and can go on; or some of several failed.
     #[error("{message}")]
     Stopped {
         /// Why, what is kept, and how to go on.

@@ -49,6 +49,19 @@ pub fn number(x: f64) -> String {
     typed(x, 6)
 }
 
+/// A time of a run between these times, with six digits of their distance: `40`, `1700000012.5`.
+pub fn time(t: f64, [start, end]: [f64; 2]) -> String {
+    let lost = (start.abs().max(end.abs()) / (end - start).abs()).log10().floor();
+    if lost.is_nan() || lost < 1.0 {
+        return number(t);
+    }
+    let digits = 6 + lost.min(11.0) as usize;
+    match (1e-3..1e15).contains(&t.abs()) {
+        true => format!("{t:.*e}", digits - 1).parse().unwrap_or(t).to_string(),
+        false => typed(t, digits),
+    }
+}
+
 /// A number rounded to two digits, or to a whole number below a million: `144`, `2.7`, `0.0021`, `1.2e-6`.
 pub fn rough(x: f64) -> String {
     if (100.0..1e6).contains(&x.abs()) { format!("{x:.0}") } else { typed(x, 2) }
@@ -204,6 +217,18 @@ mod tests {
         let typed: Vec<String> = [0.5, 240.0, 1.2e-8, -2e9, -0.0].map(|x| typed(x, 6)).into();
         assert_eq!(typed, ["0.5", "240", "1.2e-8", "-2e9", "0"]);
         assert_eq!([f64::NAN, -f64::INFINITY].map(|x| super::short(x, 6)), ["n/a", "−∞"]);
+    }
+
+    #[test]
+    fn times_have_the_digits_of_their_span() {
+        let span = [1.7e9, 1.7e9 + 40.0];
+        assert_eq!(span.map(|t| time(t, span)), ["1700000000", "1700000040"]);
+        assert_eq!(time(1.7e9 + 0.125, span), "1700000000.125");
+        assert_eq!(time(100.0 / 3.0, [0.0, 40.0]), "33.3333");
+        assert_eq!(time(-100.0 / 3.0, [-33.5, -33.0]), "-33.33333");
+        assert_eq!(time(1.0 / 3.0, [1.0 / 3.0; 2]), (1.0f64 / 3.0).to_string());
+        assert_eq!([0.0, 1e-300].map(|t| time(t, [1e-300, 1.01e-300])), ["0", "1e-300"]);
+        assert_eq!(time(1e300, [0.0, f64::INFINITY]), "1e300");
     }
 
     #[test]

@@ -86,6 +86,7 @@ pub fn run(args: &CompareArgs) -> Result<(), CliError> {
         return Err(CliError::Message(message.into()));
     }
     output::make_folder(&folder)?;
+    let _lock = output::Lock::of(&folder)?;
     let steps = numbers_of_steps(&scene);
     let (asked, tolerances) =
         (falling(&args.errors, &ASKED), falling(&args.tolerances, &TOLERANCES));
@@ -466,8 +467,8 @@ impl Comparison<'_> {
             format!("{}: which method?", self.scene.title),
             format!(
                 "t = {} to {}, {} methods on this machine",
-                output::number(t0),
-                output::number(t1),
+                output::time(t0, [t0, t1]),
+                output::time(t1, [t0, t1]),
                 curves.len()
             ),
             vec![Section::new("In short", answer), Section::new("More", more)],

@@ -55,27 +55,34 @@ pub fn run(args: &RunArgs) -> Result<(), CliError> {
     let stop = listen()?;
     let opened: Vec<_> = args.scenes.iter().map(|path| args.settings.open(path)).collect();
     refuse_one_folder_for_two(args, &opened)?;
-    let mut failed = 0;
-    for (path, scene) in args.scenes.iter().zip(opened) {
+    let (mut failed, mut codes) = (0, Vec::new());
+    for (number, (path, scene)) in args.scenes.iter().zip(opened).enumerate() {
         if stop.load(Ordering::Relaxed) {
             let message = format!("interrupted before {}", path.display());
             return Err(CliError::Stopped { message, code: INTERRUPTED });
         }
-        match scene.map_err(Into::into).and_then(|scene| run_one(args, path, &scene, &stop)) {
+        match scene
+            .map_err(Into::into)
+            .and_then(|scene| run_one(args, &args.scenes[number..], &scene, &stop))
+        {
             Err(error) if args.scenes.len() == 1 || error.exit_code() == INTERRUPTED => {
                 return Err(error);
             }
             // The other scenes run all the same.
             Err(error) => {
                 failed += 1;
+                codes.push(error.exit_code());
                 eprintln!("error: {error}");
             }
             Ok(()) => {}
         }
     }
-    match failed {
-        0 => Ok(()),
-        _ => Err(CliError::Message(format!("{failed} of {} scenes failed", args.scenes.len()))),
+    codes.dedup();
+    let message = format!("{failed} of {} scenes failed", args.scenes.len());
+    match codes[..] {
+        [] => Ok(()),
+        [code] => Err(CliError::Stopped { message, code }),
+        _ => Err(CliError::Message(message)),
     }
 }
 
@@ -107,14 +114,26 @@ fn refuse_one_folder_for_two<E>(
     Ok(())
 }
 
-/// Run one of the scenes.
-fn run_one(args: &RunArgs, path: &Path, scene: &Scene, stop: &AtomicBool) -> Result<(), CliError> {
+/// Run one of the scenes: the first of these, which are left.
+fn run_one(
+    args: &RunArgs,
+    left: &[PathBuf],
+    scene: &Scene,
+    stop: &AtomicBool,
+) -> Result<(), CliError> {
     let folder = folder_of(args, scene);
-    if args.resume && !RunState::is_in(&folder) {
-        return nothing_to_do(scene, &folder);
+    let resume = args.resume && RunState::is_in(&folder);
+    if args.resume && !resume {
+        match nothing_to_do(scene, &folder) {
+            // Others were interrupted before this one began.
+            Err(_) if args.scenes.len() > 1 => {
+                eprintln!("note: {} begins: it has no interrupted run", scene.name)
+            }
+            told => return told,
+        }
     }
     let options = Options {
-        resume: args.resume,
+        resume,
         no_page: args.no_page,
         error_check: args.error_check,
         most: if args.yes { u64::MAX } else { MOST },
@@ -122,8 +141,13 @@ fn run_one(args: &RunArgs, path: &Path, scene: &Scene, stop: &AtomicBool) -> Res
     };
     let how = |yes: bool| {
         let again = RunArgs { yes, ..args.clone() };
-        let (path, options) = (quoted(&path.display().to_string()), again.options_typed(&folder));
-        format!("`lieflow run {path}{options} --resume` goes on from there")
+        let folder = match &args.out {
+            Some(out) if left.len() > 1 => out,
+            _ => &folder,
+        };
+        let paths: Vec<_> = left.iter().map(|path| quoted(&path.display().to_string())).collect();
+        let (paths, options) = (paths.join(" "), again.options_typed(folder));
+        format!("`lieflow run {paths}{options} --resume` goes on from there")
     };
     let summary = match run_scene(scene, &folder, options, stop) {
         Err(

@@ -11,7 +11,7 @@ pub use figures::{
     Drawn, RowSample, Sample, Written, in_digits, moving_body, run_page, together, unit_of,
 };
 pub use files::{Lock, make_folder, remove_old, write_figures, write_file, write_page};
-pub use lieflow_figures::number::{duration, number, rough, size};
+pub use lieflow_figures::number::{duration, number, rough, size, time};
 pub use progress::Progress;
 pub use rows::{EVENTS, RowFile, TRAJECTORY};
 pub use state::{Kind, ROWS, Records, RunState, Seen, ShownRows};

@@ -204,6 +204,7 @@ impl RunState {
             return Err(CliError::Message(message.into()));
         }
         state.shown = Shown { length, records, sum: rows };
+        state.check_rows()?;
         Ok((state, seen, (!driver.is_empty()).then(|| driver.to_vec())))
     }
 
@@ -214,38 +215,49 @@ impl RunState {
         ))
     }
 
-    /// Show what the run showed before the state was saved, and go on from there.
-    ///
-    /// # Errors
-    /// The records are damaged, or cannot be read, or `show` fails.
-    pub fn replay(
-        &mut self,
-        mut show: impl FnMut(Kind, f64, &[f64]) -> Result<(), CliError>,
-    ) -> Result<(), CliError> {
+    /// Checks the records of the run, before a file of it is touched.
+    fn check_rows(&self) -> Result<(), CliError> {
         let path = self.folder.join(ROWS);
         let Shown { length, records, sum: expected } = self.shown;
         if records == 0 {
-            return remove_old(&path);
+            return Ok(());
         }
-        let file = match OpenOptions::new().read(true).append(true).open(&path) {
+        let file = match File::open(&path) {
             Err(source) if source.kind() == io::ErrorKind::NotFound => return Err(self.damaged()),
             opened => opened.map_err(CliError::io("read", &path))?,
         };
         let bytes = length.checked_mul(8).and_then(|bytes| bytes.checked_mul(records));
         let there = file.metadata().map_err(CliError::io("read", &path))?.len();
-        let Some(bytes) = bytes.filter(|bytes| length >= 2 && *bytes <= there) else {
+        if length < 2 || bytes.is_none_or(|bytes| bytes > there) {
             return Err(self.damaged());
-        };
+        }
         let (mut reader, mut found) = (Records::new(&file, self.shown), 0);
         while reader.read().map_err(CliError::io("read", &path))? {
             found = words(&reader.record).fold(found, sum);
+        }
+        if found == expected { Ok(()) } else { Err(self.damaged()) }
+    }
+
+    /// Show what the run showed before the state was saved, and go on from there.
+    ///
+    /// # Errors
+    /// The records cannot be read, or `show` fails.
+    pub fn replay(
+        &mut self,
+        mut show: impl FnMut(Kind, f64, &[f64]) -> Result<(), CliError>,
+    ) -> Result<(), CliError> {
+        let path = self.folder.join(ROWS);
+        if self.shown.records == 0 {
+            return remove_old(&path);
+        }
+        let file = OpenOptions::new().read(true).append(true).open(&path);
+        let file = file.map_err(CliError::io("read", &path))?;
+        let mut reader = Records::new(&file, self.shown);
+        while reader.read().map_err(CliError::io("read", &path))? {
             let (kind, t, numbers) = reader.shown();
             show(kind, t, numbers)?;
         }
-        if found != expected {
-            return Err(self.damaged());
-        }
-        file.set_len(bytes).map_err(CliError::io("write", &path))?;
+        file.set_len(self.bytes()).map_err(CliError::io("write", &path))?;
         self.file = Some(file);
         Ok(())
     }

@@ -6,7 +6,7 @@ use std::sync::LazyLock;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use crate::support::{Folder, Run, program};
+use crate::support::{Folder, Run, SCENE as SHORT, program};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use serde_json::Value;
@@ -210,6 +210,37 @@ fn the_hint_to_go_on_repeats_the_call() {
     assert_eq!(folder.names("both/second"), ["events.csv", "summary.json", "trajectory.csv"]);
 }
 
+/// A comparison writes into its folder as a run does: alone.
+#[test]
+fn a_comparison_holds_its_folder() {
+    let folder = Folder::new();
+    folder.write("scene.toml", SHORT);
+    fs::create_dir(folder.path().join("out")).unwrap();
+    let lock = lieflow_cli::output::Lock::of(&folder.path().join("out")).unwrap();
+    let args = ["compare", "scene.toml", "--quick", "--methods", "rkmk4,rk4", "--out", "out"];
+    let message = folder.lieflow(&args).refused();
+    assert!(message.contains("another run writes into `out`"), "{message}");
+    drop(lock);
+    folder.lieflow(&args).ok();
+}
+
+/// Of several scenes `--resume` begins those that had not begun. Where all fail alike, the exit code is that of one.
+#[test]
+fn several_scenes_go_on_and_fail_as_one_does() {
+    let folder = Folder::new();
+    let both = ["run", "a.toml", "b.toml", "--out", "both", "--no-page"];
+    ["a.toml", "b.toml"].iter().for_each(|name| folder.write(name, &scene("0.1")));
+    folder.write("both", "a file where the folder should be");
+    folder.lieflow(&["run", "a.toml", "--out", "both"]).failed(1);
+    assert!(folder.lieflow(&both).failed(1).contains("2 of 2 scenes failed"));
+    fs::remove_file(folder.path().join("both")).unwrap();
+    folder.lieflow(&["run", "a.toml", "--out", "both/a", "--no-page"]).ok();
+    let run = folder.lieflow(&[&both[..], &["--resume"]].concat());
+    assert!(run.err.contains("note: b begins: it has no interrupted run"), "{run:?}");
+    assert!(run.ok().contains("the run of a in `both/a` is complete"));
+    assert_eq!(folder.names("both/b"), ["events.csv", "summary.json", "trajectory.csv"]);
+}
+
 /// The run is complete when the second one begins: what is lost is the estimate of its error.
 #[test]
 fn a_second_run_is_interrupted() {
@@ -295,10 +326,13 @@ fn a_damaged_state_is_refused() {
         let whole = fs::read(&path).unwrap();
         let mut bytes = whole.clone();
         bytes[at] ^= 1;
+        let rows = folder.read("out/trajectory.partial.csv");
         for damaged in [&bytes[..], &whole[..at]] {
             fs::write(&path, damaged).unwrap();
             let message = folder.lieflow(&args).refused();
             assert!(message.contains("is damaged"), "{file}: {message}");
+            // What is refused changes nothing.
+            assert!(folder.read("out/trajectory.partial.csv") == rows, "{file}");
         }
         fs::write(&path, whole).unwrap();
     }

@@ -16,7 +16,9 @@ pub(super) fn size((observable, part): (&Observable, &Component), rows: &RowSamp
     let mut sizes: Vec<f64> = rows.rows().map(|(_, row)| norm(row)).collect();
     let ends = rows.ends().map_or([0.0; 2], |ends| ends.map(|(_, row)| norm(row)));
     sizes.sort_by(f64::total_cmp);
-    let middle = sizes.get(sizes.len() / 2).copied().unwrap_or(0.0);
+    // What comes to rest has no smaller digits than those of its motion.
+    let most = sizes.iter().copied().filter(|size| size.is_finite()).fold(0.0, f64::max);
+    let middle = sizes.get(sizes.len() / 2).map_or(0.0, |middle| middle.max(f64::EPSILON * most));
     Size { largest: ends[0].max(ends[1]).max(middle), middle }
 }
 
