@@ -64,7 +64,8 @@ impl Estimate {
         let would = || format!("the run would {}", self.in_words(folder));
         match room {
             Some(room) if self.bytes().saturating_add(RESERVE) > room => {
-                Err(format!("{}. The disk has room for {}", would(), size(room)))
+                let (room, left) = (size(room), size(RESERVE));
+                Err(format!("{}. The disk has room for {room}, of which {left} stay free", would()))
             }
             _ if self.bytes() > most => {
                 Err(format!("{}. More than {} needs --yes", would(), size(most)))
@@ -188,7 +189,7 @@ mod tests {
         for most in [MOST, u64::MAX] {
             assert_eq!(check(2_000_000, most, Some(RESERVE + 3_000_000)), "");
             let message = check(2_000_000, most, Some(RESERVE + 2_999_999));
-            assert!(message.ends_with("The disk has room for 23 MB"), "{message}");
+            assert!(message.ends_with("for 23 MB, of which 20 MB stay free"), "{message}");
         }
         assert_eq!(check(u64::MAX, u64::MAX, None), "");
     }

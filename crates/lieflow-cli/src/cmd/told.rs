@@ -4,7 +4,7 @@ use std::path::Path;
 
 use lieflow::problems::explained_by_rounding;
 
-use crate::output::{self, Drift, SUMMARY, Summary, duration, number, rough};
+use crate::output::{self, Drift, SUMMARY, Summary, duration, number, rough, time};
 
 /// The number of drifts in the text. summary.json has all.
 const DRIFTS: usize = 10;
@@ -33,8 +33,8 @@ pub(super) fn in_words(summary: &Summary, folder: &Path, page: Option<&str>) -> 
         summary.modelled.join(", "),
         summary.method.label,
         summary.layer,
-        number(*t0),
-        number(t1),
+        time(*t0, [*t0, t1]),
+        time(t1, [*t0, t1]),
         duration(*wall_time_s),
     );
     let mut line = |told: String| text += &format!("  {told}\n");

@@ -14,7 +14,7 @@ use lieflow_model::schema::{Observable, Units};
 use lieflow_timing::Fit;
 
 use super::files::remove_old;
-use super::{duration, number, rough};
+use super::{duration, rough, time};
 use crate::error::CliError;
 
 /// Number of parts whose errors are printed. The file has all.
@@ -269,7 +269,10 @@ impl Accuracy {
 
     /// When a row was, as "at t = 6.9" or "at the end".
     pub fn when(&self, t: f64) -> String {
-        if t == self.t_end { "at the end".into() } else { format!("at t = {}", number(t)) }
+        match t == self.t_end {
+            true => "at the end".into(),
+            false => format!("at t = {}", time(t, [t, self.t_end])),
+        }
     }
 
     /// As "about 8 digits".

@@ -102,3 +102,34 @@ fn a_drift_without_a_finite_value_is_not_stated() {
     assert!(!out.contains("inf") && !out.contains("NaN"), "{out}");
     assert!(!folder.read("out/index.html").contains("NaN"));
 }
+
+/// What comes to rest is not wrong by the rounding of its motion.
+#[test]
+fn a_body_that_comes_to_rest_is_right() {
+    let folder = Folder::new();
+    let text = "[problem]\nkind = \"driven-body\"\ninertia = [1, 2, 2.5]\nomega_body = [0, 0, 0]\n\
+                euler.zyx = [0.3, 1.2, 0.4]\ncontrol = [3, 4]\n\
+                [method]\nname = \"cf4\"\n[time]\nt_span = [0, END]\ndt = 0.02\n\
+                [output]\nquantities = [\"omega_body\"]\nevery = 10\n";
+    for end in ["20", "1000"] {
+        folder.write("scene.toml", &text.replace("END", end));
+        let args = ["run", "scene.toml", "--no-page", "--out", "out", "--error-check", "always"];
+        let out = folder.lieflow(&args).ok();
+        let digits = folder.json("out/summary.json")["accuracy"]["digits"].as_u64();
+        assert!(digits.is_some_and(|digits| digits >= 5), "{end}: {digits:?}");
+        assert!(!out.contains("WARNING"), "{end}: {out}");
+    }
+}
+
+/// A time far from 0 is told with the digits that it needs.
+#[test]
+fn times_far_from_zero_have_their_digits() {
+    let folder = Folder::new();
+    let text = "[problem]\nkind = \"rigid-body\"\ninertia = [1, 2, 3]\nomega_body = [0.2, 3, 1]\n\
+                [method]\nname = \"rkmk4\"\n[time]\nt_span = [1700000000, 1700000040]\ndt = 0.5\n";
+    folder.write("scene.toml", text);
+    let out = folder.lieflow(&["run", "scene.toml", "--out", "out"]).ok();
+    assert!(out.contains("t = 1700000000 to 1700000040, 80 steps"), "{out}");
+    assert!(!out.contains("1.7e9"), "{out}");
+    assert!(folder.read("out/index.html").contains("t = 1700000000 to 1700000040"));
+}

@@ -193,7 +193,7 @@ impl Scene {
         let name = if is_name { stem.into_owned() } else { "scene".into() };
         let fingerprint = fingerprint(&document.says(), problem.samples());
         let mut scene = Scene {
-            title: title.unwrap_or_else(|| name.clone()),
+            title: title.map_or(name.clone(), |title| title.replace(char::is_control, " ")),
             name,
             source: source.into(),
             problem,
