@@ -161,6 +161,14 @@ impl Problem {
         let found = self.problem.columns(quantity);
         found.map_err(|error| argument(py, "quantities", error.to_string(), ""))
     }
+    /// The name of a quantity that may be spelled in another way, as in a scene.
+    fn named(&self, py: Python<'_>, quantity: &str) -> PyResult<&'static str> {
+        self.columns(py, quantity)?;
+        let found = self.problem.kind().quantity(quantity);
+        found
+            .map(|quantity| quantity.name)
+            .map_err(|error| argument(py, "quantities", error.to_string(), ""))
+    }
     /// The times at which the right-hand side jumps, and those at which only its derivatives do.
     fn knots(&self, py: Python<'_>, t_span: [f64; 2]) -> PyResult<(Vec<f64>, Vec<f64>)> {
         if let Some(samples) = self.problem.samples() {

@@ -574,3 +574,14 @@ def test_states_off_m_are_refused():
                 lf.Integrator(problem, None, (0, 1)).state = wrong
         end = lf.solve_ivp(problem, (0, 1)).y_end
         assert lf.solve_ivp(problem, (1, 2), end).success
+
+
+def test_quantities_may_be_spelled_as_in_scenes():
+    p = lf.RigidBody(inertia=[1, 2, 3], omega_body=[0.1, 0.2, 0.3])
+    for given in ("Attitude", "attitude ", "ATTITUDE"):
+        assert lf.solve_ivp(p, (0, 1), quantities=given).y_end["attitude"].shape == (3, 3)
+    r = lf.solve_ivp(p, (0, 1), quantities=["Omega-Body", "omega_body", "momentum body"])
+    assert list(r.y) == ["omega_body", "momentum_body"]
+    assert p.exact(1.0, "euler_ZYX").euler_zyx.shape == (3,)
+    with pytest.raises(lf.ArgumentError, match="^quantities: "):
+        p.asked("foo")

@@ -163,9 +163,7 @@ class Problem(Unchanging):
         given = (quantities,) if isinstance(quantities, str) else tuple(quantities)
         if not all(isinstance(name, str) for name in given):
             raise TypeError("quantities: expected names")
-        for name in given:
-            self._problem.columns(name)
-        return tuple(dict.fromkeys(given))
+        return tuple(dict.fromkeys(self._problem.named(name) for name in given))
 
     def _both(self, asked: tuple[str, ...], events: tuple[tuple[str, str], ...]) -> tuple[_lieflow.Model, Layout]:
         """The model of these quantities, of what the motion keeps, and of events."""

@@ -222,7 +222,8 @@ class Result:
     largest_step : float
         The largest accepted step.
     t_end, y_end : float, array
-        The end of the run, also of one that failed. ``y_end`` may be the ``y0`` of another run.
+        The end of the run, also of one that failed. ``y_end`` may be the ``y0`` of another run. Of a problem it is a dict of
+        its quantities.
     drift : dict
         Of a problem: the largest |value − value at the start| of each invariant, over the output. The start is that of the
         run, also where the output begins later.
