@@ -362,3 +362,18 @@ def test_parts_have_a_field_of_t_alone():
     for y in (found.y_end, run.y):
         assert all(np.abs(y[name] - right.y_end[name]).max() < 1e-13 for name in y)
     assert found.estimate_error().y["n"] < 1e-10
+
+
+def test_long_samples_are_printed_in_short():
+    t = np.arange(1001.0)
+    long = lf.Samples(t, np.sin(t))
+    assert len(repr(long)) < 100 and "1001 times from 0.0 to 1000.0" in repr(long)
+    short = lf.Samples(t[:5], np.sin(t[:5]))
+    assert repr(eval(repr(short), {"lieflow": lf})) == repr(short)
+
+
+def test_samples_have_the_names_of_a_table():
+    pandas = pytest.importorskip("pandas")
+    table = pandas.DataFrame({"u1": [0.0, 1.0, 2.0], "u2": [1.0, 1.0, 0.0]}, index=[0.0, 1.0, 2.0])
+    assert lf.Samples(table.index, table).names == ("u1", "u2")
+    assert lf.Samples(table.index, table, names=["a", "b"]).names == ("a", "b")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import partial
 from typing import Any
 
@@ -125,6 +125,10 @@ def address(function: Any) -> int:
     return int(found)
 
 
+#: Samples of more times are printed in short.
+SHOWN = 50
+
+
 class Samples(Unchanging):
     """Sampled values as a function of time.
 
@@ -142,7 +146,7 @@ class Samples(Unchanging):
         Straight lines; the cubic spline, not-a-knot; or, of increments over the interval before each time, the rate whose
         integrals they are.
     names : sequence of str, optional
-        The names of the columns in formulas. The default is s1, s2, …, of one column s.
+        The names of the columns in formulas. The default is those of a DataFrame, else s1, s2, …, of one column s.
     """
 
     __slots__ = ("_sampled", "interpolation", "names", "t", "values")
@@ -155,6 +159,8 @@ class Samples(Unchanging):
     def __init__(
         self, t: ArrayLike, values: ArrayLike, interpolation: str = "linear", names: Sequence[str] | None = None
     ) -> None:
+        if names is None and isinstance(labels := getattr(values, "columns", None), Iterable):
+            names = [str(name) for name in labels]  # of a table
         times, rows = own("t", t), own("values", values)
         if times.ndim != 1:
             raise ArgumentError("t", f"shape {times.shape}", "shape (k,)")
@@ -186,6 +192,9 @@ class Samples(Unchanging):
         return ("samples", "\n".join(lines) + "\n")
 
     def __repr__(self) -> str:
+        if len(self.t) > SHOWN:
+            columns = f"of {', '.join(self.names)}, {self.interpolation}"
+            return f"<lieflow.Samples: {len(self.t)} times from {self.t[0]} to {self.t[-1]} {columns}>"
         t, values = self.t.tolist(), self.values.tolist()
         return f"lieflow.Samples({t}, {values}, {self.interpolation!r}, {self.names})"
 
