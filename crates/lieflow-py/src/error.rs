@@ -75,7 +75,13 @@ pub(crate) fn words(name: &str, error: &Error) -> (String, String, String) {
             let value = format!(
                 "not in the Lie algebra of {group}, at a relative distance of {residual:.1e}"
             );
-            (of(arg).into(), value, at_most(tolerance))
+            let what = match group.split('(').next() {
+                Some("U" | "SU") => "a skew-Hermitian matrix, −iH of a Hermitian H",
+                Some("SO") if !group.contains(',') => "a skew-symmetric matrix",
+                Some("Sp") => "a matrix u with uᵀJ + Ju = 0",
+                _ => return (of(arg).into(), value, at_most(tolerance)),
+            };
+            (of(arg).into(), value, format!("{what}, to {tolerance:e} of its size"))
         }
         Error::Determinant { arg, group, re, im } => {
             let value = format!("a matrix of determinant {}", plain_complex(*re, *im));

@@ -417,3 +417,9 @@ def test_every_minus_one_has_a_logarithm():
         with pytest.raises(lf.ArgumentError, match="an eigenvalue −1") as refused:
             lf.U(n).cay_inv(-np.eye(n))
         assert refused.value.argument == "g"
+
+
+def test_a_forgotten_minus_i_is_told():
+    h = np.array([[1.0, 0.3], [0.3, -1.0]], complex)
+    with pytest.raises(lf.ArgumentError, match="expected a skew-Hermitian matrix, −iH of a Hermitian H"):
+        lf.solve_ivp(lambda t, y: h, (0, 1), np.eye(2, dtype=complex), group="U(2)", frame="space")
