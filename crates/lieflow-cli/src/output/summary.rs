@@ -355,6 +355,7 @@ impl Distance {
         match self.degrees {
             _ if !self.is_known() => ("not known".into(), ""),
             Some(degrees) => (rough(degrees), " degrees"),
+            None if self.relative.is_infinite() => (rough(self.absolute), ", of a size of 0,"),
             None => (rough(self.relative), " of its size"),
         }
     }

@@ -133,3 +133,16 @@ fn times_far_from_zero_have_their_digits() {
     assert!(!out.contains("1.7e9"), "{out}");
     assert!(folder.read("out/index.html").contains("t = 1700000000 to 1700000040"));
 }
+
+/// Where a run has 0 and passed over a pulse, the error has no size.
+#[test]
+fn an_error_beside_nothing_is_told_by_itself() {
+    let folder = Folder::new();
+    let text = "[problem]\nkind = \"driven-body\"\ninertia = [1, 2, 2.5]\nomega_body = [0, 0, 0]\n\
+                torque = [\"(sign(t-100)-sign(t-100.5))/2\", 0, 0]\n[time]\nt_span = [0, 1000]\n\
+                [output]\nquantities = [\"omega_body\"]\n";
+    folder.write("scene.toml", text);
+    let out = folder.lieflow(&["run", "scene.toml", "--no-page"]).ok();
+    assert!(out.contains("momentum_space 0.5, of a size of 0, at the end"), "{out}");
+    assert!(!out.contains("inf"), "{out}");
+}
