@@ -7,6 +7,7 @@ use faer::linalg::evd::{ComputeEigenvectors, self_adjoint_evd, self_adjoint_evd_
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Col, Mat, Par, c64};
 
+use super::ops::{blocks_of_complex, complex_of_blocks};
 use super::schur::{NEGLIGIBLE, ONE, ZERO};
 use crate::error::StepError;
 use crate::scalar::{Ops, tally};
@@ -245,25 +246,16 @@ impl ComplexBlocks {
         v: &mut Mat<f64>,
         phi: impl Fn(f64) -> Result<(f64, f64), StepError>,
     ) -> Result<(), StepError> {
-        let n = self.u.nrows();
-        for (x, z) in [(u, &mut self.u), (&*v, &mut self.v)] {
-            fill(z, |i, j| c64::new(x[(i, j)], x[(n + i, j)]));
-        }
+        complex_of_blocks(u, &mut self.u);
+        complex_of_blocks(v, &mut self.v);
         self.eigen.function_of_complex_ad(&self.u, &mut self.v, phi)?;
-        for j in 0..n {
-            for i in 0..n {
-                let z = self.v[(i, j)];
-                (v[(i, j)], v[(n + i, n + j)]) = (z.re, z.re);
-                (v[(n + i, j)], v[(i, n + j)]) = (z.im, -z.im);
-            }
-        }
+        blocks_of_complex(&self.v, v);
         Ok(())
     }
 
     /// As [`SkewEigen::distance_to_singular`].
     pub(crate) fn distance_to_singular(&mut self, u: &Mat<f64>) -> Result<f64, StepError> {
-        let n = self.u.nrows();
-        fill(&mut self.u, |i, j| c64::new(u[(i, j)], u[(n + i, j)]));
+        complex_of_blocks(u, &mut self.u);
         self.eigen.distance_to_singular(&self.u)
     }
 }

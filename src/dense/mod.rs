@@ -28,7 +28,10 @@ pub use linear_algebra::{
     singular_values, squared_norm, symmetric_eigen, symmetric_eigenvalues,
 };
 pub(crate) use lu::Lu;
-pub(crate) use ops::{axpy, is_finite, norm_frobenius, norm_of, norm1, scaled_sum, wide};
+pub(crate) use ops::{
+    axpy, blocks_of_complex, complex_of_blocks, is_finite, norm_frobenius, norm_of, norm1,
+    scaled_sum, wide,
+};
 #[doc(hidden)] // for the crates of this workspace: the shapes are not checked
 pub use product::multiply_into;
 pub(crate) use product::{

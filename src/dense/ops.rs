@@ -1,6 +1,6 @@
 //! Sums and norms.
 
-use faer::{Mat, MatRef};
+use faer::{Mat, MatRef, c64};
 use pulp::{Arch, NullaryFnOnce};
 
 use crate::scalar::{Ops, tally};
@@ -247,4 +247,26 @@ pub(crate) fn norm_of(rows: usize, cols: usize, entry: impl Fn(usize, usize) -> 
 /// True if every entry is finite. It does not use sums of moduli, which may overflow although no entry does.
 pub(crate) fn is_finite(x: &Mat<f64>) -> bool {
     (0..x.ncols()).all(|j| sum(x.col_as_slice(j), |x| 0.0 * x) == 0.0)
+}
+
+/// z ← X + iY of x = \[X −Y; Y X\], by its first columns.
+pub(crate) fn complex_of_blocks(x: &Mat<f64>, z: &mut Mat<c64>) {
+    let n = z.nrows();
+    for j in 0..n {
+        for i in 0..n {
+            z[(i, j)] = c64::new(x[(i, j)], x[(n + i, j)]);
+        }
+    }
+}
+
+/// x ← \[X −Y; Y X\] of z = X + iY.
+pub(crate) fn blocks_of_complex(z: &Mat<c64>, x: &mut Mat<f64>) {
+    let n = z.nrows();
+    for j in 0..n {
+        for i in 0..n {
+            let z = z[(i, j)];
+            (x[(i, j)], x[(n + i, n + j)]) = (z.re, z.re);
+            (x[(n + i, j)], x[(i, n + j)]) = (z.im, -z.im);
+        }
+    }
 }

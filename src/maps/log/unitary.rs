@@ -4,7 +4,7 @@ use core::f64::consts::TAU;
 
 use faer::{Mat, c64};
 
-use crate::dense::Schur;
+use crate::dense::{Schur, blocks_of_complex, complex_of_blocks};
 use crate::error::Error;
 
 /// The logarithm Q diag(iθ) Q† of g = \[X −Y; Y X\], with θ in (−π, π\]. On SU(n) the angles have the sum 0: where it is
@@ -12,7 +12,7 @@ use crate::error::Error;
 pub(super) fn log(g: &Mat<f64>, is_special: bool) -> Result<Mat<f64>, Error> {
     let n = g.nrows() / 2;
     let mut schur = Schur::new(n);
-    schur.t.copy_from(Mat::from_fn(n, n, |i, j| c64::new(g[(i, j)], g[(n + i, j)])));
+    complex_of_blocks(g, &mut schur.t);
     schur.factor()?;
     let Schur { t, q, .. } = &schur;
     let mut angles: Vec<(f64, usize)> = (0..n).map(|k| (t[(k, k)].arg(), k)).collect();
@@ -31,12 +31,7 @@ pub(super) fn log(g: &Mat<f64>, is_special: bool) -> Result<Mat<f64>, Error> {
             }
         }
     }
-    Ok(Mat::from_fn(2 * n, 2 * n, |i, j| {
-        let z = u[(i % n, j % n)];
-        match (i < n, j < n) {
-            (true, false) => -z.im,
-            (false, true) => z.im,
-            _ => z.re,
-        }
-    }))
+    let mut real = Mat::zeros(2 * n, 2 * n);
+    blocks_of_complex(&u, &mut real);
+    Ok(real)
 }
