@@ -53,13 +53,15 @@ pub enum Error {
     },
     /// A matrix is not an element of the Lie algebra.
     #[error(
-        "{arg}: not in the Lie algebra of {group}: relative residual {residual:.3e}, expected at most {tolerance:.1e}"
+        "{arg}: not in the Lie algebra of {group}: relative residual {residual:.3e}, expected at most {tolerance:.1e} ({expected})"
     )]
     NotInAlgebra {
         /// The argument.
         arg: &'static str,
         /// The group.
         group: String,
+        /// What the elements of the algebra are, in words.
+        expected: &'static str,
         /// ‖uᵀM + Mu‖/(‖M‖‖u‖).
         residual: f64,
         /// What was allowed.
@@ -228,6 +230,17 @@ pub enum NoLogarithm {
 }
 
 impl Error {
+    /// The error of an element of the algebra, about another argument.
+    pub fn about(self, arg: &'static str) -> Self {
+        match self {
+            Error::NotInAlgebra { group, expected, residual, tolerance, .. } => {
+                Error::NotInAlgebra { arg, group, expected, residual, tolerance }
+            }
+            Error::Trace { group, distance, .. } => Error::Trace { arg, group, distance },
+            other => other,
+        }
+    }
+
     /// An [`OutOfRange`](Error::OutOfRange).
     pub(crate) fn out_of_range(
         arg: impl Into<String>,

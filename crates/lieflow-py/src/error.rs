@@ -71,17 +71,11 @@ pub(crate) fn words(name: &str, error: &Error) -> (String, String, String) {
         Error::Reflection { arg } => {
             (of(arg).into(), "determinant −1".into(), "a rotation, determinant +1".into())
         }
-        Error::NotInAlgebra { arg, group, residual, tolerance } => {
+        Error::NotInAlgebra { arg, group, expected, residual, tolerance } => {
             let value = format!(
                 "not in the Lie algebra of {group}, at a relative distance of {residual:.1e}"
             );
-            let what = match group.split('(').next() {
-                Some("U" | "SU") => "a skew-Hermitian matrix, −iH of a Hermitian H",
-                Some("SO") if !group.contains(',') => "a skew-symmetric matrix",
-                Some("Sp") => "a matrix u with uᵀJ + Ju = 0",
-                _ => return (of(arg).into(), value, at_most(tolerance)),
-            };
-            (of(arg).into(), value, format!("{what}, to {tolerance:e} of its size"))
+            (of(arg).into(), value, format!("{expected}, to {tolerance:e} of its size"))
         }
         Error::Determinant { arg, group, re, im } => {
             let value = format!("a matrix of determinant {}", plain_complex(*re, *im));

@@ -38,18 +38,6 @@ fn write(m: &Mat<f64>, out: &mut [f64]) {
     }
 }
 
-/// The error of the second argument of a map.
-fn of_second(error: Error) -> Error {
-    let arg = "v";
-    match error {
-        Error::NotInAlgebra { group, residual, tolerance, .. } => {
-            Error::NotInAlgebra { arg, group, residual, tolerance }
-        }
-        Error::Trace { group, distance, .. } => Error::Trace { arg, group, distance },
-        error => error,
-    }
-}
-
 impl MatrixGroup {
     /// The element of 𝔤 that is nearest to a matrix, which is in 𝔤 to [`OFF_MAX`].
     fn algebra(&self, rows: &[f64]) -> Result<AlgebraMatrix, Error> {
@@ -106,7 +94,7 @@ impl MatrixGroup {
             for (index, out) in out.chunks_exact_mut(size).enumerate() {
                 let u = self.algebra(&a[steps[0] * index..][..size]);
                 let v = self.algebra(&b[steps[1] * index..][..size]);
-                let value = u.and_then(|u| f(&u, &v.map_err(of_second)?));
+                let value = u.and_then(|u| f(&u, &v.map_err(|error| error.about("v"))?));
                 let value =
                     value.map_err(|error| Error::Element { index, source: Box::new(error) })?;
                 write(&value, out);

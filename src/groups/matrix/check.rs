@@ -3,9 +3,9 @@
 use faer::{Mat, MatRef, c64};
 
 use super::{AlgebraMatrix, Form, GroupMatrix, MatrixGroup};
-use crate::dense::{Lu, RCOND_MIN, is_finite, norm_frobenius, norm_of};
+use crate::dense::{Lu, RCOND_MIN, complex_of_blocks, is_finite, norm_frobenius, norm_of};
 use crate::error::{Error, StepError};
-use crate::groups::{LieAlgebra, MEMBERSHIP, OFF_M_MAX};
+use crate::groups::{LieAlgebra, MEMBERSHIP, OFF_M_MAX, SKEW_HERMITIAN};
 
 /// The largest distance of a determinant from 1 that a checked constructor allows.
 const DETERMINANT: f64 = 1e-10;
@@ -86,6 +86,16 @@ impl MatrixGroup {
         }
     }
 
+    fn not_in_algebra(&self, arg: &'static str, residual: f64, tolerance: f64) -> Error {
+        let expected = match self.form() {
+            _ if self.is_complex() => SKEW_HERMITIAN,
+            Form::Identity => "a skew-symmetric matrix",
+            Form::Symplectic => "a matrix u with uᵀJ + Ju = 0",
+            Form::Free | Form::Bilinear { .. } => "a matrix u with uᵀM + Mu = 0",
+        };
+        Error::NotInAlgebra { arg, group: self.name(), expected, residual, tolerance }
+    }
+
     /// ‖uᵀM + Mu‖/(‖M‖‖u‖) is at most `tolerance`, or not a number. If M is badly scaled, ‖u + M⁻¹uᵀM‖/‖u‖ is, too, where
     /// it is more than rounding.
     fn belongs(&self, arg: &'static str, u: &Mat<f64>, tolerance: f64) -> Result<(), Error> {
@@ -95,7 +105,7 @@ impl MatrixGroup {
             let v = Mat::from_fn(self.n(), self.n(), |i, j| u[(i, j)] / scale);
             let residual = self.off_form(&v) / norm_frobenius(&v);
             if residual > tolerance {
-                return Err(Error::NotInAlgebra { arg, group: self.name(), residual, tolerance });
+                return Err(self.not_in_algebra(arg, residual, tolerance));
             }
             if let (Form::Bilinear { m, inverse }, Some(rounding)) =
                 (self.form(), self.behind_inverse)
@@ -104,8 +114,7 @@ impl MatrixGroup {
                 let (residual, tolerance) =
                     (norm_frobenius(&gap) / norm_frobenius(&v), tolerance.max(rounding));
                 if residual > tolerance {
-                    let group = self.name();
-                    return Err(Error::NotInAlgebra { arg, group, residual, tolerance });
+                    return Err(self.not_in_algebra(arg, residual, tolerance));
                 }
             }
         }
@@ -161,7 +170,7 @@ impl MatrixGroup {
     ) -> Result<(), Error> {
         let residual = self.off_blocks_relative(u);
         if residual > tolerance {
-            return Err(Error::NotInAlgebra { arg, group: self.name(), residual, tolerance });
+            return Err(self.not_in_algebra(arg, residual, tolerance));
         }
         let distance = self.trace(u.as_ref()).abs();
         match self.subgroup.is_special && distance > tolerance * norm_frobenius(u) {
@@ -190,7 +199,8 @@ impl MatrixGroup {
             (true, false) => c64::new(g.determinant(), 0.0),
             (true, true) => {
                 let m = self.n() / 2;
-                let x = Mat::from_fn(m, m, |i, j| c64::new(g[(i, j)], g[(m + i, j)]));
+                let mut x = Mat::zeros(m, m);
+                complex_of_blocks(g, &mut x);
                 x.determinant()
             }
         };

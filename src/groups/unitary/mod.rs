@@ -22,7 +22,7 @@ use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
 
 use super::correct_length;
-use super::{LieAlgebra, LieGroup, MEMBERSHIP, RESIDUAL_MAX, Sample};
+use super::{LieAlgebra, LieGroup, MEMBERSHIP, RESIDUAL_MAX, SKEW_HERMITIAN, Sample};
 use crate::error::{Error, StepError};
 use crate::scalar::{Ops, larger, tally};
 use crate::space::{LinearSpace, Metric};
@@ -100,7 +100,10 @@ impl LieAlgebra for Unitary {
         self.shape(arg, u, self.n)?;
         let (residual, tolerance) = (u.skew_residual(), MEMBERSHIP);
         match residual > tolerance {
-            true => Err(Error::NotInAlgebra { arg, group: self.name(), residual, tolerance }),
+            true => {
+                let (group, expected) = (self.name(), SKEW_HERMITIAN);
+                Err(Error::NotInAlgebra { arg, group, expected, residual, tolerance })
+            }
             false => Ok(()),
         }
     }

@@ -194,14 +194,7 @@ impl EulerEquation {
     /// # Errors
     /// [`Error::NotInAlgebra`] and [`Error::Trace`], about `y`.
     pub(super) fn check_momentum(&self, m: &Mat<f64>) -> Result<(), Error> {
-        let arg = "y";
-        self.group.algebra_within(m.clone(), OFF_M).map(drop).map_err(|error| match error {
-            Error::NotInAlgebra { group, residual, tolerance, .. } => {
-                Error::NotInAlgebra { arg, group, residual, tolerance }
-            }
-            Error::Trace { group, distance, .. } => Error::Trace { arg, group, distance },
-            other => other,
-        })
+        self.group.algebra_within(m.clone(), OFF_M).map(drop).map_err(|error| error.about("y"))
     }
 }
 
