@@ -57,8 +57,9 @@ pub struct Facts {
     /// True if f is evaluated only within a step, not at its start or end, also for points between. Then a step to a stop has
     /// its whole size ([`Solve::stops`](crate::Solve::stops)).
     pub stages_within: bool,
-    /// True if steps by error have to turn the state by 8 radians at most. Points within longer steps may have no digits, where
-    /// no error estimate sees it. Pairs of `Rkmk` choose such steps themselves.
+    /// True if steps by error have to turn the state by 8 radians at most: those in halves of methods with dΨ⁻¹, and others
+    /// that say so. Points within longer steps may have no digits, where no error estimate sees it. Pairs of `Rkmk` choose such
+    /// steps themselves.
     pub short_turns: bool,
 }
 
@@ -136,7 +137,9 @@ impl Facts {
     /// The facts of a method whose steps are doubled where an error is asked for. A point within a doubled step is a shorter
     /// step.
     pub(crate) fn doubled_for_error(self) -> Self {
+        let has_dpsi_inv = self.step.maps.is_some_and(|maps| maps.dpsi_inv > 0);
         Facts {
+            short_turns: self.short_turns || has_dpsi_inv,
             error_order: Some(self.order),
             step_with_error: self.step.times(3),
             doubled_for_error: true,

@@ -105,7 +105,7 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> Method<P> for Rkm
             .estimate(tableau.name, tableau.error.map(|e| e.order.min(most)))
             .dense(extension.order().min(most), extension.evaluations());
         let step_with_error = StepCost { evaluations: Some(all), maps: Some(maps(all)) };
-        Facts { step_with_error, short_turns: tableau.error.is_none(), ..facts }
+        Facts { step_with_error, ..facts }
     }
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
         self.tableau.check_before_run()?;
@@ -186,7 +186,8 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> Method<P> for Rkm
     }
 }
 
-/// Steps by error of dΨ⁻¹ turn the state by so many radians at most ([`Facts::short_turns`]). Where f is almost constant, a step could be longer. But at large u
+/// Steps by error turn the state by so many radians at most, also those of methods with [`Facts::short_turns`]. Where f is
+/// almost constant, a step could be longer. But at large u
 /// dΨ⁻¹ multiplies the rounding of the stages, again and again in the further stages of dense output, and the error of a step
 /// does not see these.
 pub(crate) const FARTHEST: f64 = 8.0;

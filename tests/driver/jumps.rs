@@ -226,6 +226,7 @@ fn rows_within_long_steps() {
             let in_halves = [
                 off!(Doubling(Rkmk::new(RK4, Exp))),
                 off!(Doubling(Rkmk::new(HEUN, Exp))),
+                off!(Doubling(Rkmk::new(DOPRI5, Exp))),
                 off!(Doubling(RkmkGauss::new(GAUSS4, Exp))),
             ];
             for (number, off) in in_halves.into_iter().enumerate() {
