@@ -58,7 +58,7 @@ impl MatrixGroup {
     /// As [`element`](Self::element), with [`Error::Reflection`] for determinant −1 on SO(n), and [`Error::Singular`] on each
     /// group that is not compact: the error is about ε·cond(g);
     /// [`Error::NoLogarithm`] with a negative eigenvalue that is not as above, and the reason: there is
-    /// no real logarithm at all, none in 𝔤, or it is not decided;
+    /// no real logarithm at all, none in 𝔤, it is not decided, or rounding leaves it no digits;
     /// [`Error::Map`] when an iteration does not converge or the result is not finite. Cost: O(n³),
     /// some 30 products, and that of [`project_algebra`](Self::project_algebra), which is more on G_M with an M that is
     /// neither symmetric nor skew; allocates.
@@ -120,7 +120,7 @@ impl MatrixGroup {
         match triangular::log(&rest)? {
             Ok(u) => {
                 let u = u + turn;
-                match triangular::is_log(&u, g)? {
+                match triangular::is_log(&u, g) {
                     true => Ok(u),
                     false => Err(refuse(negative.eigenvalues[0], NoLogarithm::NoDigits)),
                 }
