@@ -50,10 +50,15 @@ pub fn number(x: f64) -> String {
 }
 
 /// A time of a run between these times, with six digits of their distance: `40`, `1700000012.5`.
-pub fn time(t: f64, [start, end]: [f64; 2]) -> String {
+pub fn time(t: f64, span: [f64; 2]) -> String {
+    time_or(t, span, number)
+}
+
+/// As [`time`], in another format where the distance is not small beside the times.
+pub fn time_or(t: f64, [start, end]: [f64; 2], usual: impl Fn(f64) -> String) -> String {
     let lost = (start.abs().max(end.abs()) / (end - start).abs()).log10().floor();
     if lost.is_nan() || lost < 1.0 {
-        return number(t);
+        return usual(t);
     }
     let digits = 6 + lost.min(11.0) as usize;
     match (1e-3..1e15).contains(&t.abs()) {

@@ -12,7 +12,7 @@ pub use together::{Written, together, unit_of};
 
 use core::ops::Range;
 
-use lieflow_figures::number::{number, seconds, short, sig, time};
+use lieflow_figures::number::{seconds, short, sig, time_or};
 use lieflow_figures::{
     self as figures, Axis, Block, Body, Cell, Chart, Column as TableColumn, Ground, Heat,
     LINE_COLOURS, Marker, Page, Path, Point, Scale, Section, Series, Space, Sphere, Table,
@@ -111,10 +111,7 @@ pub fn run_page(summary: &Summary, run: &Drawn<'_>) -> Page {
     sections.retain(|section| !section.blocks.is_empty());
     let [t0, t1] = summary.t_span;
     let t1 = summary.t_end.unwrap_or(t1);
-    let [from, to] = [t0, t1].map(|t| match time(t, [t0, t1]) {
-        exact if exact != number(t) => exact,
-        _ => in_digits(t),
-    });
+    let [from, to] = [t0, t1].map(|t| time_or(t, [t0, t1], in_digits));
     let mut links =
         vec![("The rows (CSV)", summary.trajectory), ("The numbers of this page (JSON)", SUMMARY)];
     if !summary.events.is_empty() {
