@@ -236,9 +236,6 @@ fn check_norm<S: Real>(norm: S) -> Result<(), Error> {
 /// The default tolerance of membership: the relative residual that checked constructors allow.
 pub const MEMBERSHIP: f64 = 1e-12;
 
-/// What the elements of u(n) are, for messages.
-pub(crate) const SKEW_HERMITIAN: &str = "a skew-Hermitian matrix, −iH of a Hermitian H";
-
 /// The largest relative distance from M of a point that a user gives to a run.
 pub(crate) const OFF_M_MAX: f64 = 1e-6;
 

@@ -5,7 +5,8 @@ use faer::{Mat, MatRef, c64};
 use super::{AlgebraMatrix, Form, GroupMatrix, MatrixGroup};
 use crate::dense::{Lu, RCOND_MIN, complex_of_blocks, is_finite, norm_frobenius, norm_of};
 use crate::error::{Error, StepError};
-use crate::groups::{LieAlgebra, MEMBERSHIP, OFF_M_MAX, SKEW_HERMITIAN};
+use crate::groups::unitary::SKEW_HERMITIAN;
+use crate::groups::{LieAlgebra, MEMBERSHIP, OFF_M_MAX};
 
 /// The largest distance of a determinant from 1 that a checked constructor allows.
 const DETERMINANT: f64 = 1e-10;

@@ -22,10 +22,13 @@ use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
 
 use super::correct_length;
-use super::{LieAlgebra, LieGroup, MEMBERSHIP, RESIDUAL_MAX, SKEW_HERMITIAN, Sample};
+use super::{LieAlgebra, LieGroup, MEMBERSHIP, RESIDUAL_MAX, Sample};
 use crate::error::{Error, StepError};
 use crate::scalar::{Ops, larger, tally};
 use crate::space::{LinearSpace, Metric};
+
+/// What the elements of u(n) are, for messages.
+pub(crate) const SKEW_HERMITIAN: &str = "a skew-Hermitian matrix, −iH of a Hermitian H";
 
 /// The group U(n). Its algebra u(n) has the skew-Hermitian matrices.
 ///
