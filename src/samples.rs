@@ -4,6 +4,7 @@
 //! |---|---|---|
 //! | [`Linear`](Interpolation::Linear) | the straight line between the two values | continuous |
 //! | [`Cubic`](Interpolation::Cubic) | the cubic spline through all values | two derivatives are continuous |
+//! | [`Previous`](Interpolation::Previous) | the value at the time before, which is held | jumps at the times |
 //! | [`MeanRate`](Interpolation::MeanRate) | the rate whose integrals over the intervals are the values | one derivative is continuous |
 //!
 //! The rate is Θ′. Θ is the cubic spline through the sums of the increments. Splines are *not-a-knot*: the first two
@@ -26,6 +27,8 @@ pub enum Interpolation {
     Linear,
     /// The cubic spline, not-a-knot at its ends.
     Cubic,
+    /// The value of each time is held until the next time (zero-order hold), as a command of a controller.
+    Previous,
     /// The rate of increments: the value at t_k is the integral over \[t_{k−1}, t_k\], as a gyro gives it. The values at
     /// the first time belong to an interval before the table and are not used.
     MeanRate,
@@ -33,16 +36,26 @@ pub enum Interpolation {
 
 impl Interpolation {
     /// Every interpolation.
-    pub const ALL: [Interpolation; 3] =
-        [Interpolation::Linear, Interpolation::Cubic, Interpolation::MeanRate];
+    pub const ALL: [Interpolation; 4] = [
+        Interpolation::Linear,
+        Interpolation::Cubic,
+        Interpolation::Previous,
+        Interpolation::MeanRate,
+    ];
 
-    /// The name of the interpolation: `linear`, `cubic`, `mean-rate`.
+    /// The name of the interpolation: `linear`, `cubic`, `previous`, `mean-rate`.
     pub const fn name(self) -> &'static str {
         match self {
             Interpolation::Linear => "linear",
             Interpolation::Cubic => "cubic",
+            Interpolation::Previous => "previous",
             Interpolation::MeanRate => "mean-rate",
         }
+    }
+
+    /// True if the values jump at the times of the samples.
+    pub const fn jumps(self) -> bool {
+        matches!(self, Interpolation::Previous)
     }
 
     /// The interpolation of that name.
@@ -156,7 +169,9 @@ impl Samples {
             return Err(Error::out_of_range("times", length, "times that span a finite length"));
         }
         let steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
-        let mut pieces = vec![[0.0; 4]; steps.len() * columns.len()];
+        // A value that is held is that of the last time, too.
+        let intervals = if interpolation.jumps() { n } else { n - 1 };
+        let mut pieces = vec![[0.0; 4]; intervals * columns.len()];
         for (j, column) in columns.iter().enumerate() {
             let values = column.as_ref();
             if values.len() != n {
@@ -252,15 +267,19 @@ impl Samples {
     /// The times inside a span where the pieces do not join to one polynomial, in rising order.
     ///
     /// A step that ends at such a time has the full order of its method. For [`Interpolation::Linear`] these are all
-    /// inner times, for splines all inner times but the first and the last.
+    /// inner times, for splines all inner times but the first and the last. For [`Interpolation::Previous`] these are all
+    /// times but the first, and those at the ends of the span count: the value just before such a time is another one.
     pub fn knots(&self, [from, to]: [f64; 2]) -> impl DoubleEndedIterator<Item = f64> {
-        let one_polynomial = match self.interpolation {
-            Interpolation::Linear => 1,
-            Interpolation::Cubic | Interpolation::MeanRate => 2,
+        let (n, jumps) = (self.times.len(), self.interpolation.jumps());
+        let knots = match self.interpolation {
+            Interpolation::Linear => 1..n - 1,
+            Interpolation::Cubic | Interpolation::MeanRate => 2..n - 2,
+            Interpolation::Previous => 1..n,
         };
-        let knots = self.times.get(one_polynomial..self.times.len() - one_polynomial);
-        let inside = move |t: &f64| from.min(to) < *t && *t < from.max(to);
-        knots.unwrap_or_default().iter().copied().filter(inside)
+        let knots = self.times.get(knots).unwrap_or_default();
+        let (low, high) = (from.min(to), from.max(to));
+        let inside = move |t: &f64| low < *t && *t < high || jumps && (*t == low || *t == high);
+        knots.iter().copied().filter(inside)
     }
 
     fn piece(&self, k: usize, j: usize) -> [f64; 4] {
@@ -275,7 +294,9 @@ impl Samples {
         if t.is_nan() || (t - inside).abs() > rounding {
             return Err(Outside { t, span });
         }
-        let inner = &self.times[1..self.times.len() - 1];
+        // The times at which another interval begins. A value that is held has one at the last time.
+        let intervals = self.times.len() - usize::from(!self.interpolation.jumps());
+        let inner = &self.times[1..intervals];
         let mut k = match self.pace {
             Some(pace) => (((inside - first) * pace) as usize).min(inner.len()),
             None => inner.partition_point(|knot| *knot <= inside),
@@ -302,8 +323,12 @@ fn polynomial([a, b, c, d]: [f64; 4], s: f64) -> f64 {
     a + s * (b + s * (c + s * d))
 }
 
-/// The polynomials of a column in the time since the start of their interval.
+/// The polynomials of a column in the time since the start of their interval. Of values that are held there is one at the
+/// last time, too.
 fn fit(steps: &[f64], values: &[f64], interpolation: Interpolation) -> Vec<[f64; 4]> {
+    if interpolation == Interpolation::Previous {
+        return values.iter().map(|x| [*x, 0.0, 0.0, 0.0]).collect();
+    }
     let mean = |(k, h): (usize, &f64)| match interpolation {
         Interpolation::MeanRate => values[k + 1] / h,
         _ => (values[k + 1] - values[k]) / h,
@@ -318,6 +343,7 @@ fn fit(steps: &[f64], values: &[f64], interpolation: Interpolation) -> Vec<[f64;
             Interpolation::Linear => [values[k], means[k], 0.0, 0.0],
             Interpolation::Cubic => [values[k], before, second, third],
             Interpolation::MeanRate => [before, 2.0 * second, 3.0 * third, 0.0],
+            Interpolation::Previous => [values[k], 0.0, 0.0, 0.0],
         }
     };
     steps.iter().enumerate().map(piece).collect()

@@ -118,7 +118,7 @@ impl Timeline {
             if in_a_row == 0 && !self.is_exact() {
                 self.see_turns(run.points(), h);
             }
-            let (end, size) = self.propose(h, stop);
+            let (end, size) = self.propose(h, stop, jumps);
             if self.attempts_left(max_steps) == 0 {
                 return Err(self.too_many(size, max_steps));
             }
@@ -206,7 +206,7 @@ impl Timeline {
                     }
                     chooser.h = Some(h);
                     // Next to t two steps of different sizes may be one after rounding.
-                    let smaller = self.propose(h, stop).0;
+                    let smaller = self.propose(h, stop, jumps).0;
                     let stuck = smaller == self.t || smaller == end;
                     let is_hard = stuck || 2 * in_a_row == REJECTIONS_MAX;
                     if !is_whole && rejected.is_ok() && h >= min_step && is_hard {
@@ -224,17 +224,20 @@ impl Timeline {
     }
 
     /// The end and the size of a step of about this size. A step ends at `stop` if that is near. It ends half way to
-    /// `stop` if otherwise the next step would be short.
-    fn propose(&self, h: f64, stop: f64) -> (f64, f64) {
+    /// `stop` if otherwise the next step would be short, or would lose time that counts.
+    fn propose(&self, h: f64, stop: f64, jumps: bool) -> (f64, f64) {
         let max_step = self.largest_size(self.farthest_turn());
         let left = (stop - self.t).abs();
         let h = h.min(max_step);
+        let within = |h: f64| {
+            let end = self.t + h.copysign(stop - self.t);
+            (end, (end - self.t).abs())
+        };
         if left <= h || (left <= 1.01 * h && left <= max_step) {
-            return (stop, left);
+            return if self.loses_time(stop, jumps) { within(0.5 * left) } else { (stop, left) };
         }
         let h = if left < 2.0 * h { 0.5 * left } else { h };
-        let end = self.t + h.copysign(stop - self.t);
-        (end, (end - self.t).abs())
+        within(h)
     }
 
     /// Computes how fast the state turns, if that was long ago or a step of this size is a long one.

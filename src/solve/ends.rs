@@ -1,13 +1,29 @@
 //! The steps to and from times at which f jumps, and to the end: no stage is on the other side.
 
 use super::stops::{MARGIN, unit};
-use super::timeline::Timeline;
+use super::timeline::{Pacer, Timeline};
 use crate::methods::Step;
+
+/// Of a step by error from one jump to the next, the time that may be lost, as a part of the tolerance.
+const LOST: f64 = 1e-3;
 
 impl Timeline {
     /// Is t a stop at which f jumps, and may a stage be there?
     pub(super) fn is_after_jump(&self) -> bool {
         self.jumped_by_stop && self.t == self.jumped_at && !self.facts.stages_within
+    }
+
+    /// Does a step by error to `end` lose time that counts? One from a jump to the next, or to the end of the run, has no room for
+    /// its whole size. Two steps have.
+    pub(super) fn loses_time(&self, end: f64, jumps: bool) -> bool {
+        let Pacer::ByError(chooser) = &self.pacer else { return false };
+        let is_last = end == self.goal || end == self.t1;
+        let (left, tolerance) = (end - self.t, chooser.control.tolerance().of_unit_size());
+        let no_room = (jumps && self.t == self.jumped_at && !self.facts.stages_within)
+            || (is_last && self.is_after_jump());
+        no_room
+            && unit(self.t, self.t + 0.5 * left) != 0.0
+            && 2.0 * unit(self.t, end).abs() > LOST * tolerance * left.abs()
     }
 
     /// The step to `end`, of size h. If f jumps there, no stage is at `end`, and if t is a stop at which f jumps, none is at t.

@@ -252,14 +252,14 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
 
     /// Lets a step end at each of these times, where f or one of its derivatives jumps.
     ///
-    /// Where f jumps, f(t) is the value after the jump, in the direction of the run: in a run backward it is the value at
-    /// earlier times. The next step evaluates f at t. The stages of the step that ends there are 4 ε|t| earlier than otherwise, so
-    /// that f is not evaluated at t. A step from one jump to the next has no such room: it is ε|t| shorter than the way, unless all
-    /// stages are within a step, as those of Magnus methods ([`Facts`](crate::methods::Facts)). At times of a clock let steps
-    /// be shorter than the time between jumps. Where only derivatives of f jump ([`Stops::at_kinks`]), as at the knots of
-    /// sampled data, nothing is changed.
+    /// Where f jumps, f is not evaluated: it may have the value of either side there, or another one. The stages of the step
+    /// that ends there are 4 ε|t| earlier than otherwise, those of the next step as much later. A step from one jump to the
+    /// next has no such room. By error it is taken in two where ε|t| counts beside the tolerance. A step of one size is ε|t|
+    /// shorter than the way, unless all stages are within a step, as those of Magnus methods
+    /// ([`Facts`](crate::methods::Facts)). At times of a clock let such steps be shorter than the time between jumps. Where
+    /// only derivatives of f jump ([`Stops::at_kinks`]), nothing is changed. [`Stops::at_knots`] has the times of samples.
     ///
-    /// The times may be in any order, and also outside the span.
+    /// The times may be in any order, and also outside the span. The ends of the span count.
     pub fn stops(mut self, times: impl Into<Stops>) -> Self {
         self.settings.stops = times.into();
         self

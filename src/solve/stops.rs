@@ -1,12 +1,13 @@
 //! Times at which a step ends, because f is not smooth there.
 
 use crate::error::Error;
+use crate::samples::Samples;
 
 /// Times at which a step ends, in any order, and also outside the span. A list of times is one of jumps.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Stops {
-    /// Where f jumps. No stage is at such a time: f may have the value of either side there, or another one. At the ends of the
-    /// span, f is evaluated.
+    /// Where f jumps. No stage is at such a time: f may have the value of either side there, or another one. The ends of the
+    /// span count.
     pub jumps: Vec<f64>,
     /// Where derivatives of f jump, and f does not: the knots of sampled data.
     pub kinks: Vec<f64>,
@@ -16,6 +17,11 @@ impl Stops {
     /// Times at which derivatives of f jump, and f does not.
     pub fn at_kinks(times: impl Into<Vec<f64>>) -> Self {
         Stops { jumps: Vec::new(), kinks: times.into() }
+    }
+    /// The times within a span at which samples are not smooth. Values that are held jump there.
+    pub fn at_knots(samples: &Samples, t_span: [f64; 2]) -> Self {
+        let knots: Vec<f64> = samples.knots(t_span).collect();
+        if samples.interpolation().jumps() { knots.into() } else { Stops::at_kinks(knots) }
     }
     /// The number of times.
     pub fn len(&self) -> usize {
@@ -64,8 +70,8 @@ impl Stops {
         }
         let jumps = self.jumps.into_iter().map(|t| Stop { t, jumps: true });
         let kinks = self.kinks.into_iter().map(|t| Stop { t, jumps: false });
-        // f may jump at the end, too: the last step evaluates it before that.
-        let is_inside = |t: f64| (t0.min(t1) < t && t < t0.max(t1)) || (t == t1 && t0 != t1);
+        // f may jump at the ends, too: the first step evaluates it after the start, the last one before the end.
+        let is_inside = |t: f64| t0.min(t1) <= t && t <= t0.max(t1) && t0 != t1;
         let mut all: Vec<Stop> = jumps.chain(kinks).filter(|stop| is_inside(stop.t)).collect();
         let forward = 1.0_f64.copysign(t1 - t0);
         // Of two at one time the jump is first, and counts.

@@ -523,7 +523,7 @@ fn no_time_is_lost_at_stops() {
 }
 
 /// No method loses time where only derivatives of f jump, and no step is as short as rounding: a rate by straight lines
-/// between knots that are no numbers of the grid.
+/// between knots that are no numbers of the grid. Nor do steps by error at jumps.
 #[test]
 fn no_time_is_lost_at_kinks() {
     use nalgebra::Matrix3;
@@ -551,7 +551,11 @@ fn no_time_is_lost_at_kinks() {
         for adaptive in [false, true] {
             let kinks = error(Stops::at_kinks(knots.clone()), span, adaptive);
             let jumps = error(knots.clone().into(), span, adaptive);
-            assert!(kinks < 3e-12 && jumps > 3e-11, "{span:?} {adaptive}: {kinks:e} {jumps:e}");
+            let lost = if adaptive { jumps } else { 0.0 };
+            // Stages that are moved have other values of f, by its slope.
+            assert!(kinks < 3e-12 && lost < 1e-11, "{span:?} {adaptive}: {kinks:e} {jumps:e}");
+            // Steps of one size have no room there.
+            assert!(adaptive || jumps > 3e-11, "{span:?}: {jumps:e}");
         }
     }
     // Of two stops at one time the jump counts, and a time that is no number is named.

@@ -12,6 +12,8 @@ use lieflow::methods::low_storage::LS32;
 use lieflow::methods::tableau::{DOP853, DOPRI5, HEUN, RK4};
 use lieflow::methods::{CommutatorFree, Doubling, GAUSS4, LowStorage, Rk, Rkmk, RkmkGauss};
 use lieflow::problems::Problem;
+use lieflow::samples::{Interpolation, Samples};
+use lieflow::solve::Stops;
 use lieflow::{Solve, StepControl};
 use nalgebra::Vector3;
 
@@ -106,6 +108,48 @@ fn the_value_of_f_at_a_stop_counts_for_nothing() {
                 })*};
             }
             check![Rkmk::new(DOP853, Exp), Rkmk::new(DOPRI5, Exp), CommutatorFree(CF43)];
+        }
+    }
+}
+
+/// A rate that is held from one time to the next, over spans that begin and end at such times, or elsewhere, and in both
+/// directions. At times of a clock, steps by error lose no time.
+#[test]
+fn a_held_value_has_no_error() {
+    let values: Vec<f64> = (0..=40).map(|k| f64::from((7 * k) % 11) - 4.5).collect();
+    for t0 in [0.0, -1.0, 1.7e9] {
+        let times: Vec<f64> = (0..=40).map(|k| t0 + 0.05 * f64::from(k)).collect();
+        let held = Samples::new(&times, &[&values], Interpolation::Previous).expect("samples");
+        let problem = spin(|t| held.column(0, t).unwrap_or(f64::NAN));
+        let [first, last] = held.span();
+        for [from, to] in [[first, last], [times[3], times[8]], [first + 0.12, last - 0.03]] {
+            let within = |t: f64| t.clamp(from, to);
+            let parts = times.windows(2).zip(&values);
+            let exact: f64 = parts.map(|(w, x)| x * (within(w[1]) - within(w[0]))).sum();
+            for (span, exact) in [([from, to], exact), ([to, from], -exact)] {
+                macro_rules! check {
+                    ($($method:expr),*) => {$({
+                        let method = $method;
+                        let stops = Stops::at_knots(&held, span);
+                        let solve = || Solve::new(&problem, &method, span).stops(stops.clone());
+                        let by_error = solve().tolerances(1e-8, 0.0).run(V::x()).expect("a run");
+                        // The state has a rounding in each step.
+                        let off = (angle(&by_error.y) - exact).sin().abs();
+                        assert!(off < 1e-13, "{}, {span:?}: {off}", stringify!($method));
+                        let by_steps = solve().dt(0.03).run(V::x()).expect("a run");
+                        let off = (angle(&by_steps.y) - exact).sin().abs();
+                        // Beside a jump a step of one size has no room for 4 ε|t|.
+                        let bound = 1e-13 + 1e3 * f64::EPSILON * t0.abs();
+                        assert!(off < bound, "{}, {span:?}: {off}", stringify!($method));
+                    })*};
+                }
+                check![
+                    Rkmk::new(DOPRI5, Exp),
+                    Rkmk::new(DOP853, Exp),
+                    CommutatorFree(CF43),
+                    Doubling(Rkmk::new(RK4, Exp))
+                ];
+            }
         }
     }
 }

@@ -7,7 +7,7 @@ use lieflow::actions::LeftTranslation;
 use lieflow::groups::{LieGroup, So3};
 use lieflow::methods::magnus::Magnus4;
 use lieflow::problems::Flow;
-use lieflow::samples::Interpolation::{Cubic, Linear, MeanRate};
+use lieflow::samples::Interpolation::{Cubic, Linear, MeanRate, Previous};
 use lieflow::samples::{Interpolation, Outside, Samples};
 use lieflow::{Error, SaveAt, TimeGrid, integrate};
 use nalgebra::{Matrix3, Vector3};
@@ -100,6 +100,28 @@ fn the_spline_is_not_a_knot() {
 }
 
 /// The integral over each interval is the increment: Simpson's rule is exact for its parabola.
+/// A value that is held is that of the last time which has passed. It jumps at each time but the first.
+#[test]
+fn a_value_is_held_until_the_next_time() {
+    for times in [&UNEVEN[..], &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0]] {
+        let held = of(times, &VALUES, Previous);
+        for (k, (t, x)) in times.iter().zip(VALUES).enumerate() {
+            assert_eq!(held.column(0, *t), Ok(x));
+            assert_eq!(held.derivative(0, 1, *t), Ok(0.0));
+            if k > 0 {
+                assert_eq!(held.column(0, t.next_down()), Ok(VALUES[k - 1]));
+            }
+        }
+        let span = held.span();
+        assert!(held.knots(span).eq(times[1..].iter().copied()));
+        assert!(held.knots([span[1], times[2]]).rev().eq(times[2..].iter().rev().copied()));
+        assert!(held.column(0, span[1] + 1.0).is_err());
+    }
+    let two = of(&[0.0, 1.0], &[3.0, 4.0], Previous);
+    assert_eq!((two.column(0, 0.5), two.column(0, 1.0)), (Ok(3.0), Ok(4.0)));
+    assert_ne!(two, of(&[0.0, 1.0], &[3.0, 5.0], Previous));
+}
+
 #[test]
 fn a_mean_rate_has_the_increments() {
     let rate = of(&UNEVEN, &VALUES, MeanRate);
@@ -170,11 +192,16 @@ fn a_table_that_is_none_is_refused() {
     refused(&[-1e308, 1e308], &[], "times = inf, expected times that span a finite length");
     refused(&[0.0, 1.0], &[&[0.0, 1.0], &[0.0]], "columns[1]: length 1, expected 2 as there are");
     refused(&[0.0, 1.0], &[&[0.0, f64::INFINITY]], "columns[0][1] = inf, expected a finite");
-    refused(&[0.0, 1e-3], &[&[0.0, 1e307]], "columns[0][1] = 1e307, expected a value whose slope");
+    for interpolation in [Linear, Cubic, MeanRate] {
+        let steep = Samples::new(&[0.0, 1e-3], &[&[0.0, 1e307]], interpolation);
+        let error = steep.unwrap_err().to_string();
+        let message = "columns[0][1] = 1e307, expected a value whose slope";
+        assert!(error.starts_with(message), "{error}");
+    }
     let error = Interpolation::named("quadratic").unwrap_err().to_string();
     assert_eq!(
         error,
-        "unknown interpolation `quadratic`: expected one of linear, cubic, mean-rate"
+        "unknown interpolation `quadratic`: expected one of linear, cubic, previous, mean-rate"
     );
     assert!(Interpolation::ALL.iter().all(|x| Interpolation::named(x.name()) == Ok(*x)));
 }

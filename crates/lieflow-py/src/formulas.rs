@@ -1,6 +1,7 @@
 //! f and events as formulas.
 
 use lieflow::RunError;
+use lieflow::solve::Stops;
 use lieflow_model::formula::Lost;
 use lieflow_model::kinds::own;
 use lieflow_model::reader::Tree;
@@ -34,9 +35,11 @@ impl Formulas {
     fn depends_on_y(&self) -> bool {
         self.0.depends_on_y()
     }
-    /// The times at which the samples are not smooth.
-    fn knots(&self, py: Python<'_>, t_span: [f64; 2]) -> PyResult<Vec<f64>> {
-        self.0.samples().map_or(Ok(Vec::new()), |samples| knots(py, samples, t_span))
+    /// The times at which the samples jump, and those at which only their derivatives do.
+    fn knots(&self, py: Python<'_>, t_span: [f64; 2]) -> PyResult<(Vec<f64>, Vec<f64>)> {
+        let stops = self.0.samples().map(|samples| knots(py, samples, t_span)).transpose()?;
+        let Stops { jumps, kinks } = stops.unwrap_or_default();
+        Ok((jumps, kinks))
     }
 }
 

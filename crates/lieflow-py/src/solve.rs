@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use lieflow::catalog::MethodSpec;
 use lieflow::samples::{Interpolation, Samples};
-use lieflow::solve::Status;
+use lieflow::solve::{Status, Stops};
 use lieflow::{Error, RunError, SaveAt};
 use lieflow_model::kinds::own::{self, Frame, GroupName, Own, OwnField};
 use lieflow_model::problem::{Change, CurvePlace, EventPlan, Plan, RowCurve, StepByStep, Steps};
@@ -171,9 +171,11 @@ impl SampledField {
         let made = Samples::new(t, &columns, kind);
         made.map(|samples| SampledField(samples.into())).map_err(|error| of_samples(py, &error))
     }
-    /// The times within a span at which the samples are not smooth. A span beyond the samples is refused.
-    fn knots(&self, py: Python<'_>, t_span: [f64; 2]) -> PyResult<Vec<f64>> {
-        knots(py, &self.0, t_span)
+    /// The times within a span at which the samples jump, and those at which only their derivatives do. A span beyond the
+    /// samples is refused.
+    fn knots(&self, py: Python<'_>, t_span: [f64; 2]) -> PyResult<(Vec<f64>, Vec<f64>)> {
+        let Stops { jumps, kinks } = knots(py, &self.0, t_span)?;
+        Ok((jumps, kinks))
     }
     /// The values at these times, by rows.
     fn at<'py>(&self, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
@@ -211,13 +213,13 @@ fn of_samples(py: Python<'_>, error: &Error) -> PyErr {
 }
 
 /// The times within a span at which samples are not smooth. A span beyond them is refused.
-pub(crate) fn knots(py: Python<'_>, samples: &Samples, t_span: [f64; 2]) -> PyResult<Vec<f64>> {
+pub(crate) fn knots(py: Python<'_>, samples: &Samples, t_span: [f64; 2]) -> PyResult<Stops> {
     samples.covers(t_span).map_err(|outside| {
         let ([start, end], [first, last]) = (t_span, outside.span);
         let expected = format!("a span within that of the samples, {first} to {last}");
         argument(py, "t_span", format!("({start}, {end})"), expected)
     })?;
-    Ok(samples.knots(t_span).collect())
+    Ok(Stops::at_knots(samples, t_span))
 }
 
 /// A run that is set up.

@@ -87,6 +87,29 @@ def test_samples_as_a_field():
             lf.Samples(*bad)
 
 
+def test_held_values_jump_at_their_times():
+    t, u = np.array([0, 0.5, 1.25, 2, 3.0]), np.array([1.0, -2, 0.5, 3, 9])
+    held = lf.Samples(t, u, "previous")
+    assert np.array_equal(held([0, 0.49, 0.5, 2.9, 3])[:, 0], [1, 1, -2, 3, 9])
+    exact = (u[:-1] * np.diff(t)).sum()
+    columns = [np.zeros(5), np.zeros(5), u]
+    rate = lf.Samples(t, np.column_stack(columns), "previous", names=["a", "b", "u"])
+    angle = lambda R: np.arctan2(R[1, 0], R[0, 0])  # noqa: E731
+    for fun in (rate, lf.Field("SO(3)", [0, 0, "u"], samples=rate)):
+        group = {"frame": "body"} if isinstance(fun, lf.Field) else ROTATION
+        for span in ((0, 3), (3, 0)):
+            for steps in ({}, {"dt": 0.4}, {"method": "rkmk4", "steps": 4}):
+                r = lf.solve_ivp(fun, span, np.eye(3), **steps, **group)
+                assert abs(angle(r.y_end) - np.sign(span[1] - span[0]) * exact) < 1e-12
+        run = lf.Integrator(fun, (0, 3), np.eye(3), dt=0.4, **group)
+        run.advance_to(3)
+        assert abs(angle(run.y) - exact) < 1e-12
+    body = lf.DrivenBody(inertia=[1, 2, 3], omega_body=[0, 0, 0.1], torque=[0, 0, "s"], samples=held)
+    for steps in ({}, {"dt": 0.4}):
+        r = lf.solve_ivp(body, (0, 3), quantities="momentum_space", **steps)
+        assert abs(r.y_end["momentum_space"][2] - 0.3 - exact) < 1e-12
+
+
 PARTS = lf.Parts(q="number", R="rotation", x="vector", m="numbers 3")
 
 

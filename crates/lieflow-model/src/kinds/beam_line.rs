@@ -231,7 +231,7 @@ impl System for BeamLine {
             .take_while(|cell| *cell < cells.end);
         let ends = starts.flat_map(|cell| self.ends_of(cell)).map(|(end, _)| end);
         // One more than a run may have, which is refused.
-        let counts = |s: &f64| (from < *s && *s < to) || *s == s1;
+        let counts = |s: &f64| from <= *s && *s <= to;
         Some(ends.filter(counts).take(KNOTS_MAX + 1).collect::<Vec<_>>().into())
     }
     fn exact(&self, [s0, s1]: [f64; 2]) -> Option<Result<Mat<f64>, Error>> {

@@ -132,8 +132,8 @@ group! {
     after {
         samples: Option<crate::formula::SamplesFile> = crate::problem::SAMPLES.meaning,
         interpolation: Option<String> =
-            "what lies between samples: \"linear\", \"cubic\" or, of increments over the interval before each \
-             time, \"mean-rate\"; optional, linear",
+            "what lies between samples: \"linear\", \"cubic\", \"previous\" for values that are held or, of increments \
+             over the interval before each time, \"mean-rate\"; optional, linear",
     }
 }
 

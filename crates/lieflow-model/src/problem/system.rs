@@ -65,7 +65,7 @@ pub(crate) trait System: Clone + Debug + Send + Sync + 'static {
     /// See [`Problem::knots`](super::Problem::knots).
     fn knots(&self, t_span: [f64; 2]) -> Option<Stops> {
         let samples = self.formula()?.samples()?;
-        Some(Stops::at_kinks(samples.knots(t_span).collect::<Vec<_>>()))
+        Some(Stops::at_knots(samples, t_span))
     }
     /// The axes of the body in the frame in which it is stated, where these differ, and what turns a point to other axes. The
     /// numbers of a point are read and set in the frame in which the problem is stated.

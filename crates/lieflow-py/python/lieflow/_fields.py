@@ -142,8 +142,8 @@ class Samples(Unchanging):
         Increasing times, at least two.
     values : (k, n) or (k,) array_like
         The values at these times.
-    interpolation : {"linear", "cubic", "mean-rate"}
-        Straight lines; the cubic spline, not-a-knot; or, of increments over the interval before each time, the rate whose
+    interpolation : {"linear", "cubic", "previous", "mean-rate"}
+        Straight lines; the cubic spline, not-a-knot; the value of each time, held until the next time; or, of increments over the interval before each time, the rate whose
         integrals they are.
     names : sequence of str, optional
         The names of the columns in formulas. The default is those of a DataFrame, else s1, s2, …, of one column s.

@@ -96,6 +96,7 @@ class Integrator:
                 raise ArgumentError("quantities", repr(quantities), "none: only a problem has quantities")
             ready = Ready(problem, y0, args, group, action, frame, linear, span)
             settings["linear"] = ready.linear
+            settings["stops"] += ready.jumps
             settings["kinks"] = ready.kinks
             self._split = None if ready.layout is None else ready.layout.split
             self._join = ready.layout

@@ -148,7 +148,9 @@ def _space(*given: Any) -> _lieflow.Space:
 class Ready:
     """A field of the user on its space, ready to run."""
 
-    __slots__ = ("args", "calls", "field", "flat", "group", "kinks", "layout", "linear", "parts", "shape", "space", "space_args")
+    __slots__ = (
+        "args", "calls", "field", "flat", "group", "jumps", "kinks", "layout", "linear", "parts", "shape", "space", "space_args",
+    )
 
     def __init__(
         self, fun: Any, y0: Any, args: tuple[Any, ...], group: Any, action: Any, frame: Any, linear: Flag,
@@ -188,6 +190,7 @@ class Ready:
         finite("y0", start)
         self.flat, self.shape = start.ravel().tolist(), start.shape
         self.linear, self.args = bool(linear), list(args)
+        self.jumps: list[float] = []
         self.kinks: list[float] = []
         self.field = self._field(fun, span)
         self.calls = isinstance(self.field, tuple) and callable(self.field[0])
@@ -205,7 +208,7 @@ class Ready:
             formulas = fun.formulas(fun.field, self.shape, tuple(self.space.value))
             if self.linear and formulas.depends_on_y:
                 raise ArgumentError("linear", "True", "False: the formulas of f depend on y")
-            self.kinks = formulas.knots(span)
+            self.jumps, self.kinks = formulas.knots(span)
             self.linear = self.linear or self.space.has_linear_methods and not formulas.depends_on_y
             return formulas
         if isinstance(fun, Samples):
@@ -214,7 +217,7 @@ class Ready:
                 raise ArgumentError("fun", f"samples of {fun.values.shape[1]} columns", expected)
             if isinstance(self.group, Parts):
                 fun = Samples(fun.t, self.group.in_order(fun.values), fun.interpolation)
-            self.kinks = fun._sampled.knots(span)
+            self.jumps, self.kinks = fun._sampled.knots(span)
             self.linear = self.linear or self.space.has_linear_methods
             return fun._sampled
         if hasattr(fun, "argtypes") and hasattr(fun, "restype") or type(fun).__name__ == "LowLevelCallable":
@@ -421,7 +424,10 @@ def _of_field(
     events: list[Event], callback: Any, space: tuple[Any, Any, Any, Any],
 ) -> Result:
     ready = Ready(fun, y0, *space, settings["linear"], span)
-    own = {**settings, "linear": ready.linear, "kinks": [*settings["kinks"], *ready.kinks]}
+    own = {
+        **settings, "linear": ready.linear, "stops": [*settings["stops"], *ready.jumps],
+        "kinks": [*settings["kinks"], *ready.kinks],
+    }
     parts = [ready.event(i, event, fun) for i, event in enumerate(events)]
     told = callback
     if callback is not None and ready.layout is not None:

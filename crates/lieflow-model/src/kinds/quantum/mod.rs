@@ -174,7 +174,7 @@ impl Hamiltonian {
     /// Where steps end: at knots of samples, and within a pulse that is short beside the span, which steps would pass over.
     fn knots(&self, [t0, t1]: [f64; 2]) -> Option<Stops> {
         if let Some(samples) = self.formula().and_then(Formula::samples) {
-            return Some(Stops::at_kinks(samples.knots([t0, t1]).collect::<Vec<_>>()));
+            return Some(Stops::at_knots(samples, [t0, t1]));
         }
         let Of::Drive(Drive { pulse: Some([at, width]), .. }) = self.of else { return None };
         let is_short = width < SHORT * (t1 - t0).abs();
