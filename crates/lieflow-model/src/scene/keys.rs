@@ -155,6 +155,7 @@ read_by_keys! {
         max_steps: Key<Option<Whole<1>>>,
         tolerance: Key<Option<String>>,
         at_knots: Key<Option<bool>>,
+        stops: Key<Option<Vec<Real>>>,
     }
 }
 
@@ -166,6 +167,8 @@ pub(super) struct Times {
     pub(super) control: Option<StepControl>,
     pub(super) limits: Limits,
     at_knots: Option<bool>,
+    /// Where the problem jumps, as the scene says.
+    pub(super) stops: Vec<f64>,
 }
 
 /// The tolerances and the limits of the steps, as the scene states them.
@@ -206,6 +209,19 @@ fn not_empty(Span([t0, t1]): Span) -> Result<[f64; 2], ReadError> {
     }
 }
 
+/// The times of `stops`, which lie in the span.
+fn within(stops: &[Real], [t0, t1]: [f64; 2]) -> Result<Vec<f64>, Refusal> {
+    let [low, high] = [t0.min(t1), t0.max(t1)];
+    let checked = stops.iter().enumerate().map(|(i, stop)| match stop.0 {
+        t if low <= t && t <= high => Ok(t),
+        t => {
+            let message = format!("t = {t} lies outside of t_span, which is [{t0}, {t1}]");
+            Err(Refusal::at("stops".index(i), message))
+        }
+    });
+    checked.collect()
+}
+
 impl TimeKeys {
     /// The span, where it can be used; also beside steps that cannot.
     pub(super) fn t_span(&self) -> Option<[f64; 2]> {
@@ -219,21 +235,25 @@ impl TimeKeys {
     pub(super) fn resolve(self) -> Result<Times, ReadError> {
         let fixed = self.fixed();
         let limits = seen(&fixed).and_then(|fixed| self.limits(fixed.is_some()));
-        let TimeKeys { t_span, at_knots, .. } = self;
+        let TimeKeys { t_span, at_knots, stops, .. } = self;
         let t_span = t_span.and_then(not_empty);
+        let stops = stops.and_then(|stops| match &t_span {
+            Ok(t_span) => Ok(within(&stops.unwrap_or_default(), *t_span)?),
+            Err(_) => Err(ReadError::known()),
+        });
         let control = match (seen(&fixed), seen(&limits)) {
             (Ok(fixed), Ok(limits)) => limits.chosen_by_error(fixed.as_ref()),
             _ => Err(ReadError::known()),
         };
-        let ([t0, t1], fixed, limits, control, at_knots) =
-            all!(t_span, fixed, limits, control, at_knots)?;
+        let ([t0, t1], fixed, limits, control, at_knots, stops) =
+            all!(t_span, fixed, limits, control, at_knots, stops)?;
         let grid = match fixed {
             Some(Either::First(dt)) => TimeGrid::new([t0, t1], dt)?,
             Some(Either::Second(steps)) => TimeGrid::with_steps([t0, t1], steps)?,
             None if t1.is_finite() => TimeGrid::with_steps([t0, t1], STEPS)?,
             None => TimeGrid::new([t0, t1], 1.0)?,
         };
-        Ok(Times { grid, control, limits, at_knots })
+        Ok(Times { grid, control, limits, at_knots, stops })
     }
 
     /// The step or the number of steps, where the scene states one.

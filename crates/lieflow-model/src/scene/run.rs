@@ -48,8 +48,10 @@ pub struct Scene {
     pub adaptive: Option<StepControl>,
     /// The limit of the attempts, where the scene has one.
     pub max_steps: Option<u64>,
-    /// Does a step end at each knot of the samples? None: only where steps are chosen by their error.
+    /// Does a step end at each knot of the problem? None: where steps are chosen by their error, or samples are held.
     at_knots: Option<bool>,
+    /// Where the problem jumps, as the scene says: a step ends at each.
+    jumps: Vec<f64>,
     /// Where rows are written.
     pub save: SaveAt,
     /// Are output times reached by shorter steps, and not by the continuous extension?
@@ -181,7 +183,7 @@ impl Scene {
         let (whole, (method, layer), at_knots, times, rows, plot, formulas, events, units) =
             finder.or(all())?;
         let (problem, keys) = whole;
-        let Times { grid, control: adaptive, limits, .. } = times;
+        let Times { grid, control: adaptive, limits, stops: jumps, .. } = times;
         let Rows { save, times_by_steps, error_check } = rows;
         let mut quantities = asked;
         if !formulas.is_empty() {
@@ -205,6 +207,7 @@ impl Scene {
             adaptive,
             max_steps: limits.max_steps,
             at_knots,
+            jumps,
             save,
             times_by_steps,
             events,
@@ -330,7 +333,8 @@ impl Scene {
         let start = self.model()?.start(&self.default_method())?;
         let [rtol, atol] = defaults::tolerances(order, &start).map(|tolerance| factor * tolerance);
         let control = limited(StepControl::new(rtol, atol)?, largest)?;
-        let stops = self.problem.knots(t_span).unwrap_or_default();
+        let mut stops = self.problem.knots(t_span).unwrap_or_default();
+        stops.jumps.extend(&self.jumps);
         Ok(Plan { stops, ..Plan::new(Steps::ByError { t_span, control }, SaveAt::Ends) })
     }
 
@@ -361,11 +365,19 @@ impl Scene {
         self.stops_of(self.adaptive.is_some(), t_span)
     }
 
-    /// The times at which a step ends, where steps are chosen by their error, or else of one size: the knots of the
-    /// problem, where they are asked for.
+    /// The times at which a step ends, where steps are chosen by their error, or else of one size: those of the scene, and
+    /// the knots of the problem, where they are asked for.
     pub fn stops_of(&self, by_error: bool, t_span: [f64; 2]) -> Stops {
         let knots = || self.problem.knots(t_span);
-        self.at_knots.unwrap_or(by_error).then(knots).flatten().unwrap_or_default()
+        let mut stops = self.ends_at_knots(by_error).then(knots).flatten().unwrap_or_default();
+        stops.jumps.extend(&self.jumps);
+        stops
+    }
+
+    /// Does a step end at each knot of the problem? Steps of one size do so by default where samples are held.
+    fn ends_at_knots(&self, by_error: bool) -> bool {
+        let is_held = |samples: &Samples| samples.interpolation().jumps();
+        self.at_knots.unwrap_or_else(|| by_error || self.problem.samples().is_some_and(is_held))
     }
 
     /// The limit of the step size, where steps are chosen by their error.
@@ -376,8 +388,7 @@ impl Scene {
     /// True if steps may pass over knots of the problem.
     pub fn passes_knots(&self) -> bool {
         let knots = self.problem.knots(self.grid.t_span());
-        !self.at_knots.unwrap_or(self.adaptive.is_some())
-            && knots.is_some_and(|knots| !knots.is_empty())
+        !self.ends_at_knots(self.adaptive.is_some()) && knots.is_some_and(|knots| !knots.is_empty())
     }
 
     /// The quantities that a run computes: those that are written, then those of formulas and events.

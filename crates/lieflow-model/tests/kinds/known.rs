@@ -372,7 +372,7 @@ fn steps_between_magnets_keep_their_order() {
 }
 
 /// The last row of a run whose steps end at the knots.
-fn last_at_stops(of: &Scene) -> Vec<f64> {
+pub(crate) fn last_at_stops(of: &Scene) -> Vec<f64> {
     let (model, mut end) = (of.model().unwrap(), Vec::new());
     let plan = of.plan(model.schema()).unwrap();
     let mut sink = |_: f64, row: Row<'_>| end = row.values().to_vec();

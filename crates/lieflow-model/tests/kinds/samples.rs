@@ -8,6 +8,7 @@ use std::{env, fs, process};
 use lieflow_model::scene::SceneError;
 
 use super::formulas::{FINE, RKMK4, SAME};
+use super::known::last_at_stops;
 use super::*;
 
 /// A folder with a file of samples, gone with its value.
@@ -31,7 +32,8 @@ impl Folder {
         Scene::parse(self.0.join("scene.toml").to_str().unwrap(), &text)
     }
     fn last(&self, problem: &str, quantity: &str) -> Vec<f64> {
-        last(&self.scene(problem, FINE, quantity).unwrap_or_else(|error| panic!("{error}")))
+        let scene = self.scene(problem, FINE, quantity);
+        last_at_stops(&scene.unwrap_or_else(|error| panic!("{error}")))
     }
     /// The line and the message of a scene that is refused.
     fn refused(&self, problem: &str, time: &str) -> (usize, String) {
@@ -110,11 +112,42 @@ fn each_interpolation_is_what_a_scene_says() {
         ("", 1.5),
         ("interpolation = \"linear\"", 1.5),
         ("interpolation = \"cubic\"", 5.0 / 3.0),
+        ("interpolation = \"previous\"", 1.0),
         ("interpolation = \"mean-rate\"", 2.0),
     ] {
         let gained = gained(interpolation);
         assert!((gained - exact).abs() < 1e-12, "{interpolation}: {gained} {exact}");
     }
+}
+
+/// Values that are held jump: steps of one size end there, too, and those by error. So they do at the `stops` of a scene.
+#[test]
+fn steps_end_where_values_jump() {
+    let folder = Folder::with("t,u\n0,1\n0.55,-2\n1.23,0.5\n2,7\n");
+    let held = body("[\"0\", \"0\", \"u\"]", "interpolation = \"previous\"");
+    let stated = "1 - 1.5*(1 + sign(t - 0.55)) + 1.25*(1 + sign(t - 1.23))";
+    let stated = body(&format!("[\"0\", \"0\", \"{stated}\"]"), "");
+    let stated = stated.replace("samples = \"data.csv\"", "");
+    // About a main axis the momentum is the integral of the torque.
+    let exact = 0.55 - 2.0 * (1.23 - 0.55) + 0.5 * (2.0 - 1.23);
+    let off = |problem: &str, time: &str| {
+        let scene = folder.scene(&problem.replace("[0.5, 0.4,", "[0, 0,"), time, "momentum_space");
+        (last_at_stops(&scene.expect("a scene"))[2] + 2.0 - exact).abs()
+    };
+    for steps in ["steps = 10", "dt = 0.3", "rtol = 1e-8"] {
+        let time = |more: &str| format!("t_span = [0, 2]\n{steps}\n{more}");
+        let [jumps, none] = [time("stops = [1.23, 0.55]"), time("")];
+        assert!(off(&held, &none) < 1e-12, "{steps}: {:e}", off(&held, &none));
+        assert!(off(&stated, &jumps) < 1e-12, "{steps}: {:e}", off(&stated, &jumps));
+        // Steps of one size do not know of a jump that no stop tells, nor of one that they are to pass.
+        if !steps.starts_with("rtol") {
+            assert!(off(&stated, &none) > 1e-3);
+            assert!(off(&held, &time("at_knots = false")) > 1e-3);
+        }
+    }
+    let (line, message) = folder.refused(&stated, "t_span = [0, 2]\nstops = [0.5,\n3]\ndt = 1");
+    assert_eq!(line, 14, "{message}");
+    assert!(message.contains("t = 3 lies outside of t_span, which is [0, 2]"), "{message}");
 }
 
 /// g = exp(0.3 (cos πt, sin πt, 0)^) at the end is what it was at the start. Straight lines through the mean rates
