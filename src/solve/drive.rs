@@ -398,7 +398,7 @@ impl Drive<'_> {
     /// Handles a zero of an event, and all others at the same time.
     fn occur(&mut self, output: &mut dyn AnyOutput, t: f64) -> Ended {
         let mut stopped = None;
-        let mut acts = false;
+        let (mut acts, mut changes) = (false, false);
         let at = self.zeros_done..self.zeros_done + self.zeros_with(output, t)?;
         for zero in at.clone() {
             self.look_at(output, t, false)?;
@@ -406,6 +406,7 @@ impl Drive<'_> {
             output.tell(event, t, rising);
             let this = &mut self.events.all[event];
             this.count += 1;
+            changes |= this.changes;
             acts |= this.changes || this.stops();
             if this.stops() && stopped.is_none() {
                 stopped = Some(this.name.clone());
@@ -416,6 +417,10 @@ impl Drive<'_> {
             return Ok(None);
         }
         self.look_at(output, t, false)?;
+        if changes && t != self.times.t && output.shows_other_orbit() {
+            // Within a step some methods leave M by the error of their order. A shorter step ends on M.
+            self.look_at(output, t, true)?;
+        }
         if t != self.times.t {
             // The point at t is one within a step.
             output.see_end(self.times.t);

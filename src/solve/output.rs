@@ -41,6 +41,8 @@ pub(super) trait AnyOutput {
     fn observe(&mut self, t: f64) -> Next;
     /// Tells the zero of an event, at the point of the output.
     fn tell(&mut self, event: usize, t: f64, rising: bool);
+    /// Is the state on the orbit of the run, up to rounding, and the point of the output not?
+    fn shows_other_orbit(&mut self) -> bool;
     /// y ← the point of the output.
     fn take_shown(&mut self);
     /// y ← the point of the output, which the observer changed. It must be on M.
@@ -202,6 +204,10 @@ impl<P: Problem, M: Method<P>> AnyOutput for Output<'_, '_, P, M> {
             Some(told) => told(t, &self.shown, rising),
             None => self.occurrences.push(Occurrence { event, t, y: self.shown.clone(), rising }),
         }
+    }
+    fn shows_other_orbit(&mut self) -> bool {
+        let Output { points, shown, .. } = self;
+        points.leaves_orbit_at(shown)
     }
     fn take_shown(&mut self) {
         let Output { points, shown, .. } = self;

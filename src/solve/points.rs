@@ -360,6 +360,19 @@ impl<'a, P: Problem, M: Method<P>> Points<'a, P, M> {
             .map_err(|source| RunError::Within { t: last.t, h: last.h, source })
     }
 
+    /// Is the state on the orbit of the run, up to rounding, and a point within the last step not?
+    pub(super) fn leaves_orbit_at(&mut self, at: &PointOf<P>) -> bool {
+        let Points { problem, y, to, orbit, restore, .. } = self;
+        let (group, action) = (problem.group(), problem.action());
+        let mut is_on = |point: &PointOf<P>| {
+            to.assign(point);
+            let residual = action.restore_to(group, orbit, to, restore);
+            let relative = residual.map(|residual| residual / action.residual_size(group, point));
+            relative.is_none_or(|residual| residual.all_below(ON_M * ScalarOf::<P>::EPSILON))
+        };
+        !is_on(at) && is_on(y)
+    }
+
     /// y ← y changed by `change`, and corrected to M. It must be on M, else y is unchanged. The run continues on the orbit
     /// of the new y.
     pub(super) fn change(&mut self, change: &mut dyn FnMut(&mut PointOf<P>)) -> Result<(), Error> {

@@ -30,6 +30,37 @@ fn attitudes() -> (Rotations, Arc<AtomicU64>) {
     (DynFlow::new(Flow::new(So3::new(), LeftTranslation, field), LeftTranslation), calls)
 }
 
+/// An event that changes the state goes on from a point on M, also where the points within a step have left it.
+#[test]
+fn a_change_within_a_step_begins_on_the_manifold() {
+    use lieflow::groups::LieGroup;
+    use lieflow::maps::Exp;
+    use lieflow::methods::{GAUSS4, Gauss, Rkmk, tableau::RK4};
+    let (body, _) = attitudes();
+    let start = Matrix3::identity();
+    // At a zero of one number of the attitude, it turns by half a turn in the body.
+    let half = Matrix3::from_diagonal(&Vector3::new(-1.0, -1.0, 1.0));
+    macro_rules! run {
+        ($method:expr, $h:expr) => {{
+            let method = $method;
+            let turned = Event::new("turn", |_, g: &Matrix3<f64>| g[(0, 0)] - 0.4);
+            let turned = turned.stop_after(2).change(move |_, g: &mut Matrix3<f64>| *g *= half);
+            let solve = Solve::new(&body, &method, [0.0, 20.0]).dt($h).event(turned);
+            solve.run(start).expect("a run")
+        }};
+    }
+    let exact = run!(Rkmk::new(RK4, Exp), 1e-3);
+    let mut before: Option<f64> = None;
+    for h in [0.2, 0.1, 0.05] {
+        let run = run!(Gauss(GAUSS4), h);
+        assert!(So3::<f64>::new().defect(&run.y) < 1e-12, "{h}: {:e}", So3::new().defect(&run.y));
+        let off = (run.y - exact.y).norm();
+        // Not the points within a step: 1e-3 of them in M would not be seen as 1e-6.
+        assert!(before.is_none_or(|before| off < 0.2 * before) && off < 0.2, "{h}: {off:e}");
+        before = Some(off);
+    }
+}
+
 fn assert_moves<T: Send + 'static>(_: &T) {}
 fn assert_shared<T: Send + Sync + 'static>(_: &T) {}
 
