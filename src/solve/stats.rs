@@ -170,10 +170,12 @@ pub enum RunError {
     },
     /// The attempts were used up.
     #[error(
-        "{max_steps} attempt{} did not reach the end: t = {}, next step h = {} ({accepted} accepted, {rejected} rejected){}",
+        "{max_steps} attempt{} did not reach the end: t = {}, next step h = {} ({accepted} accepted, {rejected} rejected{}){}",
         if *max_steps == 1 { "" } else { "s" },
         Plain(.t),
         Plain(.h),
+        // The limit is that of a call, and these are the numbers of the run.
+        if accepted + rejected > *max_steps { " since the start of the run" } else { "" },
         still_to_take(*left, *h, *by_error)
     )]
     TooManySteps {
