@@ -41,10 +41,12 @@ impl Journal {
     /// The file cannot be read or written.
     pub fn open(folder: &Path, of: &str) -> Result<Self, CliError> {
         let path = folder.join(JOURNAL);
-        let mut text = match fs::read_to_string(&path) {
-            Err(error) if error.kind() == ErrorKind::NotFound => String::new(),
+        let bytes = match fs::read(&path) {
+            Err(error) if error.kind() == ErrorKind::NotFound => Vec::new(),
             read => read.map_err(CliError::io("read", &path))?,
         };
+        // An interruption may have cut a line within a character.
+        let mut text = String::from_utf8_lossy(&bytes).into_owned();
         let (mut points, mut times) = (HashMap::new(), HashMap::<String, Vec<f64>>::new());
         let mut ours = false;
         for line in text.lines() {

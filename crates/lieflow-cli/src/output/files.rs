@@ -80,15 +80,35 @@ impl Lock {
     /// Another run writes into the folder, or the file of the lock cannot be written.
     pub fn of(folder: &Path) -> Result<Self, CliError> {
         let path = folder.join("run.lock");
-        let file = File::create(&path).map_err(CliError::io("write", &path))?;
-        match file.try_lock() {
-            Err(TryLockError::WouldBlock) => Err(CliError::Message(format!(
-                "another run writes into `{}`: wait until it ends, or name another folder with --out",
-                folder.display()
-            ))),
-            _ => Ok(Lock { path, _file: file }),
+        loop {
+            let file = File::create(&path).map_err(CliError::io("write", &path))?;
+            if matches!(file.try_lock(), Err(TryLockError::WouldBlock)) {
+                return Err(CliError::Message(format!(
+                    "another run writes into `{}`: wait until it ends, or name another folder with --out",
+                    folder.display()
+                )));
+            }
+            // A run that ended meanwhile may have removed this file, and the next run would make another one.
+            if is_at(&file, &path) {
+                return Ok(Lock { path, _file: file });
+            }
         }
     }
+}
+
+/// Has the file this path?
+#[cfg(unix)]
+fn is_at(file: &File, path: &Path) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    let number = |data: fs::Metadata| (data.dev(), data.ino());
+    let [open, there] = [file.metadata(), fs::metadata(path)].map(|data| data.ok().map(number));
+    open == there
+}
+
+/// A file that is open keeps its path.
+#[cfg(not(unix))]
+fn is_at(_file: &File, _path: &Path) -> bool {
+    true
 }
 
 impl Drop for Lock {

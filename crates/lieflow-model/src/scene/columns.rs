@@ -7,10 +7,13 @@ use lieflow_runs::schema::{Component, Measure, Row, Schema};
 
 use crate::formula::{Formula, Lets, Names, Parameters};
 use crate::problem::{FormulaKeys, Model, Problem};
-use crate::reader::{Mistakes, Read, ReadError, Refusal, Tree, read_by_keys, seen};
+use crate::reader::{KeyPath, Mistakes, Read, ReadError, Refusal, Tree, read_by_keys, seen};
 
 /// The name of the quantity that `[output.formulas]` is.
 pub(super) const FORMULAS: &str = "formulas";
+
+/// The column of events.csv that has the name of the event.
+const EVENT: &str = "name";
 
 /// A column of a quantity.
 #[derive(Clone, Debug)]
@@ -187,6 +190,11 @@ impl Columns {
     pub(super) fn define(&mut self, lets: &Lets) -> Result<Vec<FormulaColumn>, ReadError> {
         self.names = core::mem::take(&mut self.names).with_lets(FORMULAS, lets);
         self.names.take_mistakes()?;
+        if self.names.entries_of(lets).any(|(_, name, _)| name == EVENT) {
+            let message =
+                format!("`{EVENT}` is the column of the names of events: give it another name");
+            return Err(Refusal::at(FORMULAS.entry(EVENT), message).into());
+        }
         let entries = self.names.entries_of(lets);
         let column = |(of, name, formula): (&str, String, _)| FormulaColumn {
             of: of.into(),
