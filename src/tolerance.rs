@@ -57,6 +57,19 @@ pub fn least_rtol<S: Real>() -> f64 {
 const REACH: f64 = 10.0;
 /// The same where the tolerance is that of the whole part, however short the step is.
 const WHOLE: f64 = 1e300;
+/// The same for a step over a jump of f. There the rule is that of a step, too.
+const JUMP: f64 = 1e301;
+
+/// What the errors of steps are relative to, besides the sizes of the parts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Weight {
+    /// The way that the step moves them.
+    Moved,
+    /// Nothing: the error is noise.
+    Whole,
+    /// Nothing, nor the length of the step: f jumps in it.
+    Jump,
+}
 
 /// The tolerance of a part of a point.
 #[derive(Clone, Debug, PartialEq)]
@@ -189,9 +202,14 @@ pub struct Tolerance {
 }
 
 impl Tolerance {
-    /// Makes errors of steps relative to the whole of a part, however short the steps are, or takes that back.
-    pub(crate) fn weigh_whole(&mut self, whole: bool) {
-        self.parts.iter_mut().for_each(|part| part.reach = if whole { WHOLE } else { REACH });
+    /// Sets what errors of steps are relative to.
+    pub(crate) fn weigh(&mut self, by: Weight) {
+        let reach = match by {
+            Weight::Moved => REACH,
+            Weight::Whole => WHOLE,
+            Weight::Jump => JUMP,
+        };
+        self.parts.iter_mut().for_each(|part| part.reach = reach);
     }
 
     /// One rtol and one atol for all parts.
@@ -234,10 +252,12 @@ impl Tolerance {
         self.parts.iter().map(PartTolerance::atol).fold(f64::INFINITY, f64::min)
     }
 
-    /// The tolerance of all parts together, by [`Rule::PerLength`].
+    /// The tolerance of all parts together, by [`Rule::PerLength`], for this length. A step over a jump of f has that of the
+    /// length 1 at least.
     #[inline]
     pub(crate) fn per_length<S: Real>(&self, length: S) -> S {
-        self.parts[0].scale(length)
+        let part = &self.parts[0];
+        part.scale(if part.reach == JUMP { larger(length, S::lit(1.0)) } else { length })
     }
 
     /// The tolerances of the parts, in their order.

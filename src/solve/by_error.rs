@@ -11,6 +11,7 @@ use super::streak::{Reach, Run};
 use super::timeline::{Chooser, Pacer, Timeline, Turns};
 use crate::error::StepError;
 use crate::methods::{Attempts, FARTHEST, Resize, Step, Streak};
+use crate::tolerance::Weight;
 
 /// The number of rejections in a row that ends a run.
 const REJECTIONS_MAX: u32 = 60;
@@ -103,7 +104,7 @@ impl Timeline {
     ) -> Result<(), RunError> {
         let Pacer::ByError(chooser) = &self.pacer else { return Ok(()) };
         let StepControl { min_step, max_steps, first_step, .. } = chooser.control;
-        run.points().weigh_whole(chooser.noise.per_size > 0.0);
+        run.points().weigh(chooser.noise.weight());
         let mut h = match chooser.h.or(first_step) {
             _ if self.is_exact() => self.exact_step(run.points(), stop),
             Some(h) => h,
@@ -132,7 +133,7 @@ impl Timeline {
             }
             self.see_noise_again(run.points(), size);
             if is_whole {
-                run.points().weigh_whole(true);
+                run.points().weigh(Weight::Jump);
             }
             first_size = first_size.max(size);
             let step = self.step_to(end, end - self.t, jumps && end == stop);

@@ -9,7 +9,7 @@ use super::control::GOAL;
 use super::points::AnyPoints;
 use super::timeline::{Chooser, Pacer, Timeline};
 use crate::methods::Streak;
-use crate::tolerance::Rule;
+use crate::tolerance::{Rule, Weight};
 
 /// The part of the estimated error of a step that is rounding of t.
 #[derive(Clone, Copy, Debug, Default)]
@@ -37,6 +37,11 @@ impl Noise {
     /// The number of steps after which it is computed again.
     fn every(self) -> u64 {
         Self::EVERY[usize::from(self.per_size > 0.0)]
+    }
+
+    /// What the errors of steps are relative to.
+    pub(super) fn weight(self) -> Weight {
+        if self.per_size > 0.0 { Weight::Whole } else { Weight::Moved }
     }
 
     /// The ratio that counts, of an estimated error in units of the tolerance of a step of this size. `k` is the order of the
@@ -87,13 +92,13 @@ impl Timeline {
     fn see_noise(&mut self, points: &mut dyn AnyPoints, size: f64) {
         let mut per_size = 0.0;
         if self.may_be_noisy(size) {
-            points.weigh_whole(true);
+            points.weigh(Weight::Whole);
             per_size = self.noise_of(points, size);
         }
-        points.weigh_whole(per_size > 0.0);
         let Pacer::ByError(Chooser { noise, .. }) = &mut self.pacer else { return };
         *noise = Noise { per_size, next: self.stats.accepted, size };
         noise.next += noise.every();
+        points.weigh(noise.weight());
     }
 
     /// The noise of steps of this size for each unit of it, as their parts show it; 0 where it does not count.
@@ -123,7 +128,7 @@ impl Timeline {
             return noise;
         }
         // Relative to the length of a short step, it does not fall with the step size.
-        points.weigh_whole(false);
+        points.weigh(Weight::Moved);
         let short = self.ratio_of_part(points, Noise::PARTS[0] * size);
         match short {
             Some((h, ratio)) if ratio > least && ratio > 2.0 * seen * h => noise,

@@ -17,7 +17,7 @@ use crate::methods::{
 use crate::problems::{AlgOf, PointOf, Problem, ScalarOf};
 use crate::scalar::{Real, smaller};
 use crate::space::{Metric, check_within_reach};
-use crate::tolerance::{Rule, Scales, Tolerance};
+use crate::tolerance::{Rule, Scales, Tolerance, Weight};
 
 /// How far from M, relative to y, a step may move because f is not in 𝔤. Rounding of f moves it less.
 const OFF_BY_A_STEP: f64 = 1e-9;
@@ -64,8 +64,8 @@ pub(super) trait AnyPoints {
     fn change_of_rate(&mut self, t: f64) -> f64;
     /// h times the error of f that the rounding of t makes in a step of size h from (t, y), in units of the tolerance.
     fn noise_of_time(&mut self, t: f64, h: f64) -> f64;
-    /// Makes errors relative to the whole of a part, however short the steps are, or takes that back.
-    fn weigh_whole(&mut self, whole: bool);
+    /// Sets what errors are relative to.
+    fn weigh(&mut self, by: Weight);
     /// A power of two above the rate at which f(t, y) turns y, or 0 if that is not finite. It is computed for steps of one
     /// size, too.
     fn turn_rate(&mut self, t: f64) -> f64;
@@ -488,9 +488,9 @@ impl<P: Problem, M: Method<P>> AnyPoints for Points<'_, P, M> {
             (estimator.ratio)(problem, f, y, tolerance, length)
         })
     }
-    fn weigh_whole(&mut self, whole: bool) {
+    fn weigh(&mut self, by: Weight) {
         if let Some(rates) = &mut self.rates {
-            rates.tolerance.weigh_whole(whole);
+            rates.tolerance.weigh(by);
         }
     }
     fn turn_rate(&mut self, t: f64) -> f64 {

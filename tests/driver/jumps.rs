@@ -14,6 +14,7 @@ use lieflow::methods::{CommutatorFree, Doubling, GAUSS4, LowStorage, Rk, Rkmk, R
 use lieflow::problems::Problem;
 use lieflow::samples::{Interpolation, Samples};
 use lieflow::solve::Stops;
+use lieflow::tolerance::Rule;
 use lieflow::{Solve, StepControl};
 use nalgebra::Vector3;
 
@@ -223,6 +224,35 @@ fn jumps_without_a_stop_are_passed() {
             Rkmk::new(DOP853, Exp),
             Rk(DOPRI5),
             Rk(DOP853)
+        ];
+    }
+}
+
+/// By the length of a step no step over a jump is short enough: it counts as a whole one, and the steps grow again.
+#[test]
+fn jumps_are_passed_by_the_length_of_steps() {
+    for (at, after) in [(0.4046, 1.0), (0.7, -30.0)] {
+        let problem = spin(move |t| if t < at { 0.01 } else { after });
+        let exact = 0.01 * at + after * (1.0 - at);
+        macro_rules! pass {
+            ($($method:expr),*) => {$(for rtol in [1e-3, 1e-5, 1e-7] {
+                let control = StepControl::new(rtol, 0.0).expect("tolerances").rule(Rule::PerLength);
+                let control = control.max_step(2.5e-3).expect("a step");
+                let method = $method;
+                let run = Solve::new(&problem, &method, [0.0, 1.0]).control(control);
+                let run = run.run(V::x()).expect(stringify!($method));
+                let off = (angle(&run.y) - exact).sin().abs();
+                assert!(off < 100.0 * rtol, "{} at {at}, rtol = {rtol}: {off}", stringify!($method));
+                let attempts = run.stats.accepted + run.stats.rejected;
+                assert!(attempts < 2000, "{} at {at}, rtol = {rtol}: {attempts}", stringify!($method));
+            })*};
+        }
+        pass![
+            Doubling(Rkmk::new(RK4, Exp)),
+            Doubling(CommutatorFree(CF4)),
+            CommutatorFree(CF43),
+            LowStorage(LS32),
+            Rkmk::new(DOPRI5, Exp)
         ];
     }
 }
