@@ -1,9 +1,8 @@
 //! The least number of zeros of events on the exact motion.
 
-use lieflow_model::problem::EventPlan;
+use lieflow_model::problem::{EventPlan, GOLDEN};
 
 use super::watch::Watch;
-use crate::measure::GOLDEN;
 
 /// The number of times at which the sign of an event is looked at.
 const SIGNS: u32 = 2000;

@@ -14,7 +14,7 @@ use super::{Candidate, Size, WorkPoint};
 use crate::error::CliError;
 use lieflow_counting::operations;
 use lieflow_model::problem::{
-    Model, Plan, Rows as Watched, SHORT_STEPS, Sink, Steps, time_to_search,
+    Model, Plan, Rows as Watched, SHORT_STEPS, Sink, Steps, is_elsewhere, time_to_search,
 };
 use lieflow_model::scene::Scene;
 use lieflow_model::schema::{Component, Observable, Row, Schema, length};
@@ -23,8 +23,6 @@ use lieflow_timing::cpu_seconds;
 /// Numbers of steps in which the exact motion is always taken, to see how much it rounds.
 const PARTS: [u64; 5] = [2, 3, 5, 7, 11];
 
-/// A run in short steps that ends this many errors away has found something that longer steps pass over.
-pub(crate) const PASSED_OVER: f64 = 30.0;
 /// Where runs of few steps are judged besides their end, in parts of the span. The errors of a few steps may cancel at the
 /// end of a whole number of turns.
 const WITHIN: [f64; 2] = [0.382, 0.809];
@@ -175,7 +173,7 @@ impl<'a> Judge<'a> {
         }
         let Some(found) = self.tight_run(model, &method, Some(short))? else { return Ok(()) };
         let rounding = explained_by_rounding(found.steps, 1.0);
-        if self.error(&found.end) > PASSED_OVER * self.reference.floor().max(rounding) {
+        if is_elsewhere(self.error(&found.end), self.reference.floor().max(rounding)) {
             self.take_two_runs(model, Some(short))?;
         }
         Ok(())

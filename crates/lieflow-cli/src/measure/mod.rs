@@ -17,8 +17,8 @@ pub use checks::checks;
 use curve::OFF;
 pub use curve::{Curve, Reached, WorkPoint, pareto};
 pub use journal::{JOURNAL, Journal};
+pub(crate) use judge::RETURNS;
 pub use judge::{Course, Judge, MOST_ROWS, Rows};
-pub(crate) use judge::{PASSED_OVER, RETURNS};
 pub use kept::Kept;
 pub use reference::{Reference, Rounding};
 
@@ -46,9 +46,6 @@ pub enum Size {
     /// Steps chosen by their error: rtol, with atol = 0.
     Tolerance(f64),
 }
-
-/// The golden section. Its multiples keep away from those of any step and of any period.
-pub(crate) const GOLDEN: f64 = 0.618_033_988_749_894_8;
 
 /// The flag of a measurement that nothing stops.
 pub static NEVER: AtomicBool = AtomicBool::new(false);

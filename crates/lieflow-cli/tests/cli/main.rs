@@ -22,6 +22,7 @@ mod right;
 mod room;
 mod run;
 mod same_bits;
+mod search;
 mod second_run;
 mod sizes;
 mod small;

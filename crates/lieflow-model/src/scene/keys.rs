@@ -183,6 +183,8 @@ pub(super) struct Limits {
     rule: Option<Rule>,
     /// Are the steps left to the program?
     pub(super) is_left: bool,
+    /// Is their number given, and not their size?
+    pub(super) counts_steps: bool,
 }
 
 /// A step, or the number of steps.
@@ -234,7 +236,7 @@ impl TimeKeys {
     /// Refusals of the keys that cannot be used, and of those that exclude each other.
     pub(super) fn resolve(self) -> Result<Times, ReadError> {
         let fixed = self.fixed();
-        let limits = seen(&fixed).and_then(|fixed| self.limits(fixed.is_some()));
+        let limits = seen(&fixed).and_then(|fixed| self.limits(fixed.as_ref()));
         let TimeKeys { t_span, at_knots, stops, .. } = self;
         let t_span = t_span.and_then(not_empty);
         let stops = stops.and_then(|stops| match &t_span {
@@ -266,7 +268,9 @@ impl TimeKeys {
         }
     }
 
-    fn limits(&self, is_fixed: bool) -> Result<Limits, ReadError> {
+    fn limits(&self, fixed: Option<&Fixed>) -> Result<Limits, ReadError> {
+        let is_fixed = fixed.is_some();
+        let counts_steps = matches!(fixed, Some(Either::Second(_)));
         let tolerance = |key, x: &Key<Option<Real>>| {
             let x = seen(x)?.map(|x| x.checked(key, "a finite number ≥ 0", |x| x >= 0.0));
             x.transpose()
@@ -293,7 +297,7 @@ impl TimeKeys {
         let (rtol, atol, h_init, h_min, h_max, max_steps, rule) =
             all!(rtol, atol, h_init, h_min, h_max, max_steps, rule)?;
         let is_left = !is_fixed && rtol.is_none() && atol.is_none();
-        Ok(Limits { rtol, atol, h_init, h_min, h_max, max_steps, rule, is_left })
+        Ok(Limits { rtol, atol, h_init, h_min, h_max, max_steps, rule, is_left, counts_steps })
     }
 }
 

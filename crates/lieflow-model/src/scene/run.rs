@@ -333,8 +333,7 @@ impl Scene {
         let start = self.model()?.start(&self.default_method())?;
         let [rtol, atol] = defaults::tolerances(order, &start).map(|tolerance| factor * tolerance);
         let control = limited(StepControl::new(rtol, atol)?, largest)?;
-        let mut stops = self.problem.knots(t_span).unwrap_or_default();
-        stops.jumps.extend(&self.jumps);
+        let stops = self.stops_of(true, t_span);
         Ok(Plan { stops, ..Plan::new(Steps::ByError { t_span, control }, SaveAt::Ends) })
     }
 
@@ -378,6 +377,11 @@ impl Scene {
     fn ends_at_knots(&self, by_error: bool) -> bool {
         let is_held = |samples: &Samples| samples.interpolation().jumps();
         self.at_knots.unwrap_or_else(|| by_error || self.problem.samples().is_some_and(is_held))
+    }
+
+    /// Does the scene state the number of steps, and not their size?
+    pub fn counts_steps(&self) -> bool {
+        self.limits.counts_steps
     }
 
     /// The limit of the step size, where steps are chosen by their error.

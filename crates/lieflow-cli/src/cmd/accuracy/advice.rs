@@ -1,12 +1,19 @@
 //! What is said of an inaccurate run, and the change that would help.
 
+use std::time::Instant;
+
+use lieflow::SaveAt;
+use lieflow_model::problem::LAST_DIGITS;
+use lieflow_model::schema::length;
 use lieflow_timing::cpu_seconds;
 
-use super::{Check, LONG, OWN, Way};
+use super::unseen::{Found, with_rounding};
+use super::{Check, Ends, LONG, OWN, Way};
+use crate::cmd::apart::{Apart, Size, parts_of};
 use crate::output::{Accuracy, Distance, FoundBy, number, rough};
 
 /// A larger relative error is worth a warning.
-pub(super) const POOR: f64 = 1e-2;
+const POOR: f64 = 1e-2;
 /// A larger one makes a run useless.
 const USELESS: f64 = 0.1;
 /// The relative error that an advice should lead to.
@@ -56,7 +63,7 @@ impl Check<'_> {
         let default = self.tried(Way { default: true, ..OWN }, &times);
         // Where high order and the least tolerance do not do, no step does.
         let is_hopeless = matches!(default, Some(None));
-        let default = default.flatten().filter(|_| !self.default_passes_over());
+        let default = default.flatten();
         let default = default.map(|accuracy| accuracy.digits_in_words());
         let smaller = match is_hopeless {
             true if self.is_by_atol(worst.largest.absolute) => self.without_atol(&times),
@@ -88,19 +95,76 @@ impl Check<'_> {
         Some(format!("{wrong} {advice}.{knots}"))
     }
 
-    /// Does the run of a scene that names no method pass over something short? Its end is another one in short steps.
-    fn default_passes_over(&self) -> bool {
-        let ends = [None, Some(self.short_step())].map(|largest| {
-            let way = Way { default: true, largest, ..OWN };
-            self.rows_at(way, &[self.end()]).ok().and_then(|(mut rows, _)| rows.pop())
-        });
-        let [Some(one), Some(other)] = ends else { return false };
-        self.ends_apart([[&one, &other]].into_iter()).relative() > POOR
+    /// The errors of another run at these times, if they can be found; none inside if that run is poor, or passes over
+    /// something short, too.
+    fn tried(&self, way: Way, times: &[f64]) -> Option<Option<Accuracy>> {
+        let clock = Instant::now();
+        // The run itself, as a user takes it: with its rows between steps. Others beside it see what was the hardest for it.
+        let scene = self.scene();
+        let by_steps = scene.times_by_steps || matches!(scene.save, SaveAt::Every(_));
+        let as_taken = Way { ends: Ends::At(None), ..way };
+        let (rows, taken) = self.rows_from(None, as_taken, times, by_steps).ok()?;
+        let way = Way { ends: Ends::At(taken.hardest), ..way };
+        // The rows of a run that blew up are larger than the motion.
+        let schema = self.watch.model.schema();
+        let sizes: Vec<Size> = parts_of(self.watch)
+            .zip(&self.run.sizes)
+            .map(|((observable, part), size)| {
+                let norms = rows
+                    .iter()
+                    .map(|row| length(&schema.row(row)[observable][part.columns.clone()]));
+                let largest = norms.fold(0.0, f64::max);
+                Size { largest: size.largest.min(largest), middle: size.middle.min(largest) }
+            })
+            .collect();
+        let apart = |others: &[Vec<f64>]| {
+            let pairs = times.iter().zip(rows.iter().zip(others));
+            let pairs = pairs.map(|(t, (row, other))| (*t, [&row[..], &other[..]]));
+            Apart::of_rows(self.watch, &sizes, pairs)
+        };
+        let exact = || times.iter().map(|t| self.watch.exact(*t)).collect::<Option<Vec<_>>>();
+        // What rounding does to it, as `moved` of the run.
+        let changed = || {
+            self.rows_from(Some(self.changed_start(way, LAST_DIGITS)?), way, times, by_steps).ok()
+        };
+        let mut end_moved = None;
+        let moved = match self.is_exact {
+            true => 0.0,
+            false => changed().map_or(self.moved.get(), |(others, _)| {
+                let moved = self.judge((FoundBy::Exact, 1.0), &apart(&others), 0.0, clock);
+                end_moved = Some(moved.relative());
+                self.by_rounding(moved.relative())
+            }),
+        };
+        let (found_by, share, apart) = match self.is_exact {
+            true => (FoundBy::Exact, 1.0, apart(&exact()?)),
+            false => {
+                let other =
+                    |way| self.rows_at(way, times).map(|(rows, taken)| (apart(&rows), taken.steps));
+                self.by_another(way, taken, other).ok()?
+            }
+        };
+        let share = with_rounding((found_by, share), &apart, end_moved);
+        let accuracy = self.judge((found_by, share), &apart, moved, clock);
+        // Two runs may have the same rounding.
+        let is_good = |accuracy: &Accuracy| moved <= POOR && accuracy.relative() <= POOR;
+        let search = self.search(way, taken.largest).filter(|_| !self.is_exact);
+        let accuracy = match search.filter(|_| is_good(&accuracy)) {
+            None => Some(accuracy),
+            Some((_, search)) => {
+                match self.found_by((way, search), (times, &rows, &sizes), (&accuracy, moved)) {
+                    Ok(Found::Nothing) => Some(accuracy),
+                    Ok(Found::Jumps(nearer)) => Some(nearer),
+                    Ok(Found::Elsewhere { .. }) | Err(_) => None,
+                }
+            }
+        };
+        Some(accuracy.filter(is_good))
     }
 
     /// A limit of the step size that would do at these times, and the digits that it gives.
     fn shorter_steps(&self, times: &[f64]) -> Option<String> {
-        let (short, way) = self.short_steps()?;
+        let (short, way) = self.short_steps(OWN, self.own.largest)?;
         let accuracy = self.tried(way, times)??;
         let limit = self.limit_of_steps(short);
         Some(format!("{limit} would give {}", accuracy.digits_in_words()))
@@ -149,7 +213,7 @@ impl Check<'_> {
             let Some(accuracy) = self.tried(way, times) else { break };
             if let Some(accuracy) = &accuracy {
                 let steps = match smaller {
-                    None => format!("dt = {}", number(factor * h)),
+                    None => self.step_size(factor * h),
                     Some([rtol, atol]) => {
                         let both = [("rtol", rtol), ("atol", atol)];
                         let both = both.iter().filter(|(_, tolerance)| *tolerance > 0.0);

@@ -13,14 +13,13 @@ use lieflow::catalog::MethodSpec;
 use lieflow::problems::explained_by_rounding;
 use lieflow::solve::{Next, Stats, Status};
 use lieflow::tolerance::Tolerance;
-use lieflow::{SaveAt, TimeGrid};
+use lieflow::{SaveAt, StepControl, TimeGrid};
 use lieflow_model::problem::{
-    LAST_DIGITS, Outcome, Plan, Steps, Watcher, other_tolerance, stop_after_hardest,
+    Outcome, Plan, Steps, Watcher, near_ends, other_tolerance, stop_after_hardest,
 };
 use lieflow_model::scene::Scene;
-use lieflow_model::schema::{Component, Observable, Row, length};
+use lieflow_model::schema::{Component, Observable, Row};
 
-use self::advice::POOR;
 use self::sizes::size;
 use self::unseen::with_rounding;
 use super::apart::{
@@ -68,8 +67,8 @@ pub(super) struct Check<'a> {
     is_exact: bool,
     /// The times of some rows, and of the last.
     sample: Vec<f64>,
-    /// The last row.
-    last: Vec<f64>,
+    /// The numbers of these rows.
+    rows: Vec<Vec<f64>>,
     /// The CPU time at which a run ends.
     deadline: Cell<Option<f64>>,
     /// What a change of the last digits of the start moves the end by, relative to its size: no run has more digits.
@@ -104,6 +103,8 @@ struct Way {
     largest: Option<f64>,
     /// Are steps of one size split?
     split: bool,
+    /// Do steps of one size have short parts at both ends?
+    graded: bool,
     /// rtol and atol before the factor, where they are others than those of the scene.
     tolerances: Option<[f64; 2]>,
     /// Where a step ends.
@@ -124,6 +125,7 @@ const OWN: Way = Way {
     factor: 1.0,
     largest: None,
     split: false,
+    graded: false,
     tolerances: None,
     ends: Ends::AtHardest,
 };
@@ -183,14 +185,27 @@ impl<'a> Check<'a> {
             step: own.largest,
             stop,
         };
-        let kept: Vec<f64> = rows.rows().map(|(t, _)| t).collect();
-        let mut sample: Vec<f64> =
-            kept.iter().copied().step_by(kept.len().div_ceil(SAMPLE).max(1)).collect();
-        sample.extend((sample.last() != Some(&t)).then_some(t));
-        let last = rows.ends().map_or(Vec::new(), |[_, (_, row)]| row.numbers().into());
+        let every = rows.rows().count().div_ceil(SAMPLE).max(1);
+        let some = rows.rows().step_by(every).chain(rows.ends().map(|[_, last]| last));
+        let (mut sample, mut kept) = (Vec::new(), Vec::<Vec<f64>>::new());
+        for (t, row) in some {
+            if sample.last() != Some(&t) {
+                sample.push(t);
+                kept.push(row.numbers().into());
+            }
+        }
         let (deadline, moved) = (Cell::new(None), Cell::new(0.0));
-        let mut check =
-            Check { watch, run, own, ended_by_event, is_exact, sample, last, deadline, moved };
+        let mut check = Check {
+            watch,
+            run,
+            own,
+            ended_by_event,
+            is_exact,
+            sample,
+            rows: kept,
+            deadline,
+            moved,
+        };
         check.see_sizes_between();
         check
     }
@@ -260,11 +275,12 @@ impl<'a> Check<'a> {
             (self.judge((found_by, share), &apart, self.moved.get(), clock), Vec::new());
         let mut time_errors: Vec<_> = apart.events.iter().map(time_error).collect();
         warnings.extend(moved.and_then(|moved| self.growth_warning(&moved, accuracy.relative())));
-        if let Some((other, warning)) = self.passed_over(&accuracy, seconds) {
-            (accuracy, time_errors) = (other, vec![None; time_errors.len()]);
-            warnings.push(warning);
-        }
         let mut notes = self.small_rows(&apart, share);
+        if let Some(passed) = self.passed_over(&accuracy, seconds)? {
+            (accuracy, time_errors) = (passed.accuracy, vec![None; time_errors.len()]);
+            warnings.extend(passed.warning);
+            notes.extend(passed.note);
+        }
         notes.extend(self.small_columns(&apart, share));
         notes.extend(self.derived_without_digits(&apart, share));
         let laws = apart.laws.iter().map(|gap| gap * share).collect();
@@ -362,7 +378,7 @@ impl<'a> Check<'a> {
 
     /// The plan of a run to time t.
     fn plan(&self, way: Way, t: f64) -> Result<Plan<'static>, String> {
-        let Way { default, factor, largest, split, tolerances, ends } = way;
+        let Way { default, factor, largest, split, graded, tolerances, ends } = way;
         let plan = match default {
             true => {
                 let order = self.watch.model.order(&self.method(way));
@@ -371,12 +387,18 @@ impl<'a> Check<'a> {
             false => self.scene().plan_to(t, factor, largest),
         };
         let mut plan = plan.map_err(|error| error.to_string())?;
+        if let (Steps::ByError { control, .. }, Some(_)) = (&mut plan.steps, largest) {
+            // The limit is that of the longer steps of the run.
+            let most = control.clone().max_steps(StepControl::MAX_STEPS);
+            *control = most.map_err(|error| error.to_string())?;
+        }
         plan.stops.kinks.extend(match ends {
             Ends::AtHardest => self.own.hardest,
             Ends::At(place) => place,
         });
         match (&mut plan.steps, tolerances) {
             (Steps::Equal(grid), _) if split => *grid = grid.split(),
+            (Steps::Equal(grid), _) if graded => plan.stops.kinks.extend(near_ends(grid)),
             (Steps::ByError { control, .. }, Some([rtol, atol])) => {
                 let rule = control.tolerance().rule();
                 let other = Tolerance::new(factor * rtol, factor * atol);
@@ -392,23 +414,24 @@ impl<'a> Check<'a> {
         Limits { cancel, stop: self.run.stop, deadline: self.deadline.get() }
     }
 
-    /// The rows of another run at these times, and its steps; or why it did not get to the end.
+    /// The rows of another run at these times, each reached by a step, and its steps; or why it did not get to the end.
     fn rows_at(&self, way: Way, times: &[f64]) -> Result<(Vec<Vec<f64>>, Taken), String> {
-        self.rows_from(None, way, times)
+        self.rows_from(None, way, times, true)
     }
 
-    /// [`rows_at`](Self::rows_at) from another start, by the numbers of its point.
+    /// [`rows_at`](Self::rows_at) from another start, by the numbers of its point; and reached by steps or not.
     fn rows_from(
         &self,
         start: Option<Vec<f64>>,
         way: Way,
         times: &[f64],
+        times_by_steps: bool,
     ) -> Result<(Vec<Vec<f64>>, Taken), String> {
         let cancel = AtomicBool::new(false);
         let mut kept = Kept { rows: Vec::new(), limits: self.limits(&cancel) };
         let save = SaveAt::Times(times.to_vec());
         let plan = self.plan(way, self.end())?;
-        let plan = Plan { save, times_by_steps: true, cancel: Some(&cancel), start, ..plan };
+        let plan = Plan { save, times_by_steps, cancel: Some(&cancel), start, ..plan };
         let outcome = self.watch.model.drive(&self.method(way), plan, &mut kept);
         let Outcome { status, stats, .. } = outcome.map_err(|error| error.to_string())?;
         match status {
@@ -527,56 +550,6 @@ impl<'a> Check<'a> {
         let (seconds, rows, parts) = (clock.elapsed().as_secs_f64(), apart.rows, parts.collect());
         let t_end = self.end();
         Accuracy { found_by, seconds, rows, digits: 0, parts, t_end }.with_digits(unseen)
-    }
-
-    /// The errors of another run at these times, if they can be found; none inside if that run is poor, too.
-    fn tried(&self, way: Way, times: &[f64]) -> Option<Option<Accuracy>> {
-        let clock = Instant::now();
-        // The run itself, as a user takes it. Others beside it see what was the hardest for it.
-        let (rows, taken) = self.rows_at(Way { ends: Ends::At(None), ..way }, times).ok()?;
-        let way = Way { ends: Ends::At(taken.hardest), ..way };
-        // The rows of a run that blew up are larger than the motion.
-        let schema = self.watch.model.schema();
-        let sizes: Vec<Size> = parts_of(self.watch)
-            .zip(&self.run.sizes)
-            .map(|((observable, part), size)| {
-                let norms = rows
-                    .iter()
-                    .map(|row| length(&schema.row(row)[observable][part.columns.clone()]));
-                let largest = norms.fold(0.0, f64::max);
-                Size { largest: size.largest.min(largest), middle: size.middle.min(largest) }
-            })
-            .collect();
-        let apart = |others: &[Vec<f64>]| {
-            let pairs = times.iter().zip(rows.iter().zip(others));
-            let pairs = pairs.map(|(t, (row, other))| (*t, [&row[..], &other[..]]));
-            Apart::of_rows(self.watch, &sizes, pairs)
-        };
-        let exact = || times.iter().map(|t| self.watch.exact(*t)).collect::<Option<Vec<_>>>();
-        // What rounding does to it, as `moved` of the run.
-        let changed =
-            || self.rows_from(Some(self.changed_start(way, LAST_DIGITS)?), way, times).ok();
-        let mut end_moved = None;
-        let moved = match self.is_exact {
-            true => 0.0,
-            false => changed().map_or(self.moved.get(), |(others, _)| {
-                let moved = self.judge((FoundBy::Exact, 1.0), &apart(&others), 0.0, clock);
-                end_moved = Some(moved.relative());
-                self.by_rounding(moved.relative())
-            }),
-        };
-        let (found_by, share, apart) = match self.is_exact {
-            true => (FoundBy::Exact, 1.0, apart(&exact()?)),
-            false => {
-                let other =
-                    |way| self.rows_at(way, times).map(|(rows, taken)| (apart(&rows), taken.steps));
-                self.by_another(way, taken, other).ok()?
-            }
-        };
-        let share = with_rounding((found_by, share), &apart, end_moved);
-        let accuracy = self.judge((found_by, share), &apart, moved, clock);
-        // Two runs may have the same rounding.
-        Some((moved <= POOR && accuracy.relative() <= POOR).then_some(accuracy))
     }
 }
 

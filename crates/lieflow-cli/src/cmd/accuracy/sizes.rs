@@ -1,10 +1,11 @@
 //! The sizes of the parts of the state, which errors are relative to.
 
+use lieflow_model::problem::GOLDEN;
 use lieflow_model::schema::{Component, Observable, Row, length};
 
 use super::{Check, FEW, OWN};
 use crate::cmd::apart::{Size, parts_of};
-use crate::measure::{GOLDEN, RETURNS};
+use crate::measure::RETURNS;
 use crate::output::RowSample;
 
 /// At so many times between the rows such a part is looked at.

@@ -1,14 +1,16 @@
 //! What two runs of one kind do not see: rounding that both have, and what both pass over.
 
+use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 use lieflow::problems::explained_by_rounding;
-use lieflow_model::problem::{LAST_DIGITS, SHORT_STEPS, time_to_search};
+use lieflow_model::problem::{
+    FINER, LAST_DIGITS, SHORT_STEPS, is_elsewhere, search_step, stays, time_to_search,
+};
 use lieflow_timing::cpu_seconds;
 
-use super::{Check, NO_DIGIT, OWN, Way};
+use super::{Check, NO_DIGIT, OWN, Size, Way};
 use crate::cmd::apart::Apart;
-use crate::measure::PASSED_OVER;
 use crate::output::{Accuracy, FoundBy, number, rough};
 
 /// The search for a short pulse is given up after this many times the time that it may take.
@@ -41,6 +43,31 @@ pub(super) fn with_rounding(
     }
 }
 
+/// What a search finds beside a run.
+pub(super) enum Found {
+    /// Its rows are those of the run.
+    Nothing,
+    /// They come near those of the run as its steps get shorter: f jumps near the ends of steps. The distances from the finest.
+    Jumps(Accuracy),
+    /// They are elsewhere: steps of the run have passed over something, such as a short pulse, or a jump between the last node
+    /// of a step and its end. Neither of two runs in such steps evaluates f there, so their distance shows nothing.
+    Elsewhere {
+        /// The distances.
+        distance: Accuracy,
+        /// Is the last row elsewhere?
+        is_at_end: bool,
+        /// The last row of the search.
+        last: Vec<f64>,
+    },
+}
+
+/// The error of a run that passes over something, or seems to.
+pub(super) struct PassedOver {
+    pub(super) accuracy: Accuracy,
+    pub(super) warning: Option<String>,
+    pub(super) note: Option<String>,
+}
+
 impl Check<'_> {
     /// The size of short steps.
     pub(super) fn short_step(&self) -> f64 {
@@ -48,65 +75,188 @@ impl Check<'_> {
         (end - t0).abs() / SHORT_STEPS as f64
     }
 
-    /// A run in short steps, and their size, where those of the run are larger.
-    pub(super) fn short_steps(&self) -> Option<(f64, Way)> {
+    /// Does a run choose its steps by their error?
+    fn is_by_error(&self, way: Way) -> bool {
+        way.default || self.scene().tolerances().is_some()
+    }
+
+    /// A run in short steps, and their size, where those of this run, of up to `largest`, are larger.
+    pub(super) fn short_steps(&self, way: Way, largest: f64) -> Option<(f64, Way)> {
         let short = self.short_step();
-        let way = match self.scene().tolerances() {
-            Some(_) => Way { largest: Some(short), ..OWN },
-            None => Way { factor: short / self.scene().grid.h().abs(), ..OWN },
+        let way = match self.is_by_error(way) {
+            true => Way { largest: Some(short), ..way },
+            false => Way { factor: short / self.scene().grid.h().abs(), ..way },
         };
-        (2.0 * short < self.own.largest).then_some((short, way))
+        (2.0 * short < largest).then_some((short, way))
+    }
+
+    /// A run in short steps that shows what the steps of this run, of up to `largest`, have passed over; and their size.
+    pub(super) fn search(&self, way: Way, largest: f64) -> Option<(f64, Way)> {
+        if self.is_by_error(way) {
+            return self.short_steps(way, largest);
+        }
+        let [t0, end] = self.run.t_span;
+        let size = search_step((end - t0).abs(), largest);
+        Some((size, Way { factor: size / self.scene().grid.h().abs(), ..way }))
     }
 
     /// The setting that limits the steps to this size.
     pub(super) fn limit_of_steps(&self, size: f64) -> String {
-        let name = if self.scene().tolerances().is_some() { "h_max" } else { "dt" };
-        format!("{name} = {}", number(size))
+        match self.scene().tolerances() {
+            Some(_) => format!("h_max = {}", number(size)),
+            None => self.step_size(size),
+        }
     }
 
-    /// The distance of the last row from that of a run in short steps, with a warning, where the steps of two runs that are
-    /// chosen by their error have passed over something, such as a short pulse or a jump near the end of a step. Neither run
-    /// evaluates f there, so the error of a step shows nothing. Only the last row is compared: a pulse whose effect dies out
-    /// before it is not seen.
-    pub(super) fn passed_over(&self, known: &Accuracy, seconds: f64) -> Option<(Accuracy, String)> {
-        let (clock, end) = (Instant::now(), self.end());
-        if self.is_exact || self.ended_by_event {
-            return None;
-        }
-        let (short, way) = self.short_steps()?;
-        let most = self.time_to_search(seconds)?;
-        // The estimate of its time may be wrong: within a pulse f may be dear, or steps small.
-        self.deadline.set(Some(cpu_seconds() + most * MISJUDGED));
-        let found = self.rows_at(way, &[end]);
-        self.deadline.set(None);
-        let (rows, taken) = found.ok()?;
-        let pair = rows.first().map(|row| (end, [&self.last[..], &row[..]]));
-        let apart = Apart::of_rows(self.watch, &self.run.sizes, pair.into_iter());
-        let found = self.judge((FoundBy::ShortSteps, 1.0), &apart, self.moved.get(), clock);
-        let growth = (self.moved.get() / (OF_CHANGE * LAST_DIGITS)).max(1.0);
+    /// The setting of steps of one size.
+    pub(super) fn step_size(&self, size: f64) -> String {
+        let instead = if self.scene().counts_steps() { " instead of `steps`" } else { "" };
+        format!("dt = {}{instead}", number(size))
+    }
+
+    /// What a search finds beside rows of a run, of these two ways. The error of the run is known, and `moved` is what rounding
+    /// moves its end by. Where steps are chosen by their error, only the last row is compared.
+    ///
+    /// # Errors
+    /// Why the search has no rows.
+    pub(super) fn found_by(
+        &self,
+        (own, way): (Way, Way),
+        (times, rows, sizes): (&[f64], &[Vec<f64>], &[Size]),
+        (known, moved): (&Accuracy, f64),
+    ) -> Result<Found, String> {
+        let clock = Instant::now();
+        let from = if self.is_by_error(way) { times.len().saturating_sub(1) } else { 0 };
+        let (times, rows) = (&times[from..], &rows[from..]);
+        let distances = |others: &[Vec<f64>]| {
+            let pairs = times.iter().zip(rows.iter().zip(others));
+            let pairs = pairs.map(|(t, (row, other))| (*t, [&row[..], &other[..]]));
+            let apart = Apart::of_rows(self.watch, sizes, pairs);
+            self.judge((FoundBy::ShortSteps, 1.0), &apart, moved, clock)
+        };
+        let (mut others, taken) = self.rows_at(way, times)?;
+        let found = distances(&others);
+        let growth = (moved / (OF_CHANGE * LAST_DIGITS)).max(1.0);
         let rounding = explained_by_rounding(taken.steps, growth);
-        let is_far = found.relative() > PASSED_OVER * known.at_end().max(rounding);
-        is_far.then(|| {
-            let name = found.worst().map_or("", |worst| &worst.name);
-            let limit = self.limit_of_steps(short);
-            let elsewhere =
-                format!("in steps of at most {} `{name}` ends elsewhere", number(short));
-            // Where their error chooses the steps, shorter ones do not move an end that short ones have found.
-            let half = way.largest.map(|h| Way { largest: Some(0.5 * h), ..way });
-            let moved = half.and_then(|half| self.rows_at(half, &[end]).ok()?.0.pop());
-            let moved = moved.map_or(0.0, |other| {
-                self.ends_apart([[&rows[0], &other]].into_iter()).relative()
-            });
-            let warning = match moved < RESOLVED * found.relative() {
-                true => format!(
-                    "{elsewhere}: the steps of this run, of up to {}, pass over something short, such as a pulse or a jump. \
-                     Give {limit} in [time], or less",
-                    number(self.own.largest)
-                ),
-                false => format!("{elsewhere}, and elsewhere again in half of these: small errors grow fast here"),
-            };
-            (found, warning)
+        let is_far = |found: f64, known: f64| is_elsewhere(found, known.max(rounding));
+        let is_at_end = is_far(found.at_end(), known.at_end());
+        if !is_at_end && !is_far(found.relative(), known.relative()) {
+            return Ok(Found::Nothing);
+        }
+        let last = others.pop().unwrap_or_default();
+        if self.is_by_error(way) {
+            return Ok(Found::Elsewhere { distance: found, is_at_end, last });
+        }
+        // Small errors may grow within the span, and not at its end.
+        let changed = self.changed_start(way, LAST_DIGITS);
+        let changed = changed.and_then(|start| self.rows_from(Some(start), way, times, true).ok());
+        if let Some((changed, _)) = changed
+            && !is_elsewhere(found.relative(), self.rows_apart(times, [&others, &changed], sizes))
+        {
+            return Ok(Found::Nothing);
+        }
+        let finer = self.rows_at(Way { factor: way.factor / FINER, ..way }, times);
+        let nearer = match finer.map(|(finer, _)| distances(&finer)) {
+            Ok(distance) if stays(distance.relative(), found.relative()) => {
+                return Ok(Found::Elsewhere { distance, is_at_end, last });
+            }
+            nearer => nearer.unwrap_or(found),
+        };
+        // Where steps end at the jumps, so do their parts.
+        let parts = self.rows_at(Way { graded: true, ..own }, times);
+        let is_right = |parts: &[Vec<f64>]| {
+            let apart = self.rows_apart(times, [rows, parts], sizes);
+            !is_far(apart, known.relative())
+        };
+        Ok(match parts {
+            Ok((parts, _)) if is_right(&parts) => Found::Nothing,
+            _ => Found::Jumps(nearer),
         })
+    }
+
+    /// What a search finds beside the run itself: the distances of the rows from those of the search, with a sentence. A pulse
+    /// whose effect dies out between the rows is not seen.
+    ///
+    /// # Errors
+    /// The search ended early, at something that the run has not met.
+    pub(super) fn passed_over(
+        &self,
+        known: &Accuracy,
+        seconds: f64,
+    ) -> Result<Option<PassedOver>, String> {
+        if self.is_exact || self.ended_by_event {
+            return Ok(None);
+        }
+        let search = self.search(OWN, self.own.largest).zip(self.time_to_search(seconds));
+        let Some(((size, way), most)) = search else { return Ok(None) };
+        // The estimate of its time may be wrong: within a pulse f may be dear, or steps small.
+        let until = cpu_seconds() + most * MISJUDGED;
+        self.deadline.set(Some(until));
+        let rows = (&self.sample[..], &self.rows[..], &self.run.sizes[..]);
+        let found = self.found_by((OWN, way), rows, (known, self.moved.get()));
+        self.deadline.set(None);
+        let (found, is_at_end, last) = match found {
+            Ok(Found::Nothing) => return Ok(None),
+            Ok(Found::Jumps(nearer)) => {
+                let note = "f seems to jump near the ends of steps, where no stage is. The error is the distance from a run in short \
+                            steps. Name the times of the jumps: `stops` in [time]";
+                return Ok(Some(PassedOver {
+                    accuracy: nearer,
+                    warning: None,
+                    note: Some(note.into()),
+                }));
+            }
+            Ok(Found::Elsewhere { distance, is_at_end, last }) => (distance, is_at_end, last),
+            Err(_) if cpu_seconds() > until || self.is_stopped() => return Ok(None),
+            Err(why) => {
+                return Err(format!("in steps of at most {} the run fails: {why}", number(size)));
+            }
+        };
+        let (name, when) = found.worst().map_or(("", String::new()), |worst| {
+            let is = if is_at_end {
+                "ends elsewhere".into()
+            } else {
+                format!("is elsewhere {}", found.when(worst.t))
+            };
+            (&worst.name, is)
+        });
+        let elsewhere = format!("in steps of at most {} `{name}` {when}", number(size));
+        // Where their error chooses the steps, shorter ones do not move an end that short ones have found.
+        let half = way.largest.map(|h| Way { largest: Some(0.5 * h), ..way });
+        let half = half.and_then(|half| self.rows_at(half, &[self.end()]).ok()?.0.pop());
+        let moved =
+            half.map_or(0.0, |half| self.ends_apart([[&last, &half]].into_iter()).relative());
+        let warning = match moved < RESOLVED * found.relative() {
+            true => {
+                let smaller = match self.short_steps(OWN, self.own.largest) {
+                    Some((short, _)) => {
+                        format!("Give {} in [time], or less", self.limit_of_steps(short))
+                    }
+                    None => "Take smaller steps".into(),
+                };
+                format!(
+                    "{elsewhere}: the steps of this run, of up to {}, pass over something short, such as a pulse or a jump. \
+                     {smaller}; or name the times of jumps: `stops` in [time]",
+                    number(self.own.largest)
+                )
+            }
+            false => format!(
+                "{elsewhere}, and elsewhere again in half of these: small errors grow fast here, or f jumps at times that are no `stops`"
+            ),
+        };
+        Ok(Some(PassedOver { accuracy: found, warning: Some(warning), note: None }))
+    }
+
+    /// The largest relative distance of rows of two runs.
+    fn rows_apart(&self, times: &[f64], [a, b]: [&[Vec<f64>]; 2], sizes: &[Size]) -> f64 {
+        let pairs = times.iter().zip(a.iter().zip(b));
+        let pairs = pairs.map(|(t, (a, b))| (*t, [&a[..], &b[..]]));
+        let apart = Apart::of_rows(self.watch, sizes, pairs);
+        self.judge((FoundBy::ShortSteps, 1.0), &apart, 0.0, Instant::now()).relative()
+    }
+
+    fn is_stopped(&self) -> bool {
+        self.run.stop.load(Ordering::Relaxed)
     }
 
     /// How far the last digits of the start move the end of a run. Rounding in the run does the same, and a second run
@@ -121,16 +271,18 @@ impl Check<'_> {
             // Steps of one size of an exact method are one step.
             let way = Way { factor: self.own.steps.max(1) as f64, ..OWN };
             let ends = [1.0, -1.0].map(|sign| self.changed_end(way, sign * f64::EPSILON, brief));
-            return Some(self.ends_apart(ends.iter().flatten().map(|end| [&self.last, end])));
+            let ends = ends.iter().flatten();
+            return Some(self.ends_apart(ends.filter_map(|end| Some([self.rows.last()?, end]))));
         }
         let changed = self.changed_end(OWN, LAST_DIGITS, brief);
-        let moved = self.ends_apart(changed.iter().map(|end| [&self.last, end]));
+        let last = |end| Some([self.rows.last()?, end]);
+        let moved = self.ends_apart(changed.iter().filter_map(last));
         if moved.relative() <= GROWN {
             return Some(moved);
         }
         // One of the two may have passed over a short pulse. Runs in short steps do not.
         let in_short_steps = || {
-            let (_, short) = self.short_steps()?;
+            let (_, short) = self.short_steps(OWN, self.own.largest)?;
             let most = MISJUDGED * self.time_to_search(seconds)?;
             let ends = [0.0, LAST_DIGITS].map(|change| self.changed_end(short, change, most));
             let [Some(one), Some(other)] = ends else { return None };
@@ -149,7 +301,7 @@ impl Check<'_> {
     fn changed_end(&self, way: Way, change: f64, most: f64) -> Option<Vec<f64>> {
         let start = self.changed_start(way, change)?;
         self.deadline.set(Some(cpu_seconds() + most));
-        let found = self.rows_from(Some(start), way, &[self.end()]);
+        let found = self.rows_from(Some(start), way, &[self.end()], true);
         self.deadline.set(None);
         found.ok()?.0.pop()
     }
