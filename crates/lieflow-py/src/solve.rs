@@ -5,7 +5,7 @@ use std::sync::Arc;
 use lieflow::catalog::MethodSpec;
 use lieflow::samples::{Interpolation, Samples};
 use lieflow::solve::{Status, Stops};
-use lieflow::{Error, RunError, SaveAt};
+use lieflow::{Error, RunError, SaveAt, TimeGrid};
 use lieflow_model::kinds::own::{self, Frame, GroupName, Own, OwnField};
 use lieflow_model::problem::{Change, CurvePlace, EventPlan, Plan, RowCurve, StepByStep, Steps};
 use numpy::{PyArrayDyn, PyArrayMethods, PyReadonlyArray1};
@@ -140,6 +140,31 @@ pub(crate) fn time_to_search(steps: u64, seconds: f64) -> Option<f64> {
 #[pyfunction]
 pub(crate) fn other_tolerance(rtol: f64, atol: f64) -> f64 {
     lieflow_model::problem::other_tolerance([rtol, atol])
+}
+
+/// The size of the steps of a search beside steps of one size.
+#[pyfunction]
+pub(crate) fn search_step(length: f64, largest: f64) -> f64 {
+    lieflow_model::problem::search_step(length, largest)
+}
+
+/// Has a search at this distance found something that the run has passed over?
+#[pyfunction]
+pub(crate) fn is_elsewhere(distance: f64, known: f64) -> bool {
+    lieflow_model::problem::is_elsewhere(distance, known)
+}
+
+/// Does the distance of a run from a search stay in a finer one?
+#[pyfunction]
+pub(crate) fn stays(finer: f64, distance: f64) -> bool {
+    lieflow_model::problem::stays(finer, distance)
+}
+
+/// The times near the ends of steps of this size.
+#[pyfunction]
+pub(crate) fn near_ends(py: Python<'_>, t_span: [f64; 2], dt: f64) -> PyResult<Vec<f64>> {
+    let grid = TimeGrid::new(t_span, dt).map_err(|error| refused(py, "dt", &error))?;
+    Ok(lieflow_model::problem::near_ends(&grid).collect())
 }
 
 /// f: a callable with its further arguments, the address of a C function with its parameters, formulas, or samples.

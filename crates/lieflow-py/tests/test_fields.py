@@ -101,7 +101,7 @@ def test_held_values_jump_at_their_times():
             for steps in ({}, {"dt": 0.4}, {"method": "rkmk4", "steps": 4}):
                 r = lf.solve_ivp(fun, span, np.eye(3), **steps, **group)
                 assert abs(angle(r.y_end) - np.sign(span[1] - span[0]) * exact) < 1e-12
-        run = lf.Integrator(fun, (0, 3), np.eye(3), dt=0.4, **group)
+        run = lf.Integrator(fun, None, (0, 3), np.eye(3), dt=0.4, **group)
         run.advance_to(3)
         assert abs(angle(run.y) - exact) < 1e-12
     body = lf.DrivenBody(inertia=[1, 2, 3], omega_body=[0, 0, 0.1], torque=[0, 0, "s"], samples=held)

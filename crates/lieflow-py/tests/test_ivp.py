@@ -471,8 +471,26 @@ def test_the_estimate_finds_a_pulse_that_the_run_passed_over():
     # A limit of the user stays, and a run that takes long is not made in short steps.
     slow = lf.solve_ivp(f, (0, 100), np.eye(3), group="SO(3)", frame="body", min_step=1.0, first_step=2.0)
     assert "steps" not in slow.estimate_error().found_by
-    fixed = lf.solve_ivp(f, (0, 100), np.eye(3), group="SO(3)", frame="body", dt=1.0)
+    # A search beside steps of one size finds it, too, and is not needed for a smooth f.
+    fixed = lf.solve_ivp(f, (0, 100), np.eye(3), group="SO(3)", frame="body", dt=1.0).estimate_error()
+    assert 0.01 < fixed.y < 0.03 and "f seems to jump" in fixed.found_by
+    fixed = lf.solve_ivp(lambda t, y: [np.sin(t), 0.0, 0.2], (0, 100), np.eye(3), group="SO(3)", frame="body", dt=0.1)
     assert fixed.estimate_error().found_by == "a second run with each step in two parts"
+
+
+@pytest.mark.parametrize("method", ["rkmk-gauss4", "cf3", "rkmk-gauss6", "cf-ees25"])
+def test_the_estimate_finds_a_jump_after_the_last_node_of_a_step(method):
+    def run(jump, stops=()):
+        f = lambda t, y: [0.0, 0.0, 0.2 * np.sign(t - jump)]  # noqa: E731
+        return lf.solve_ivp(f, (0, 5), np.eye(3), method=method, dt=0.1, group="SO(3)", frame="body", stops=stops)
+
+    passed = run(1.0999)
+    off = np.abs(passed.y[-1] - lf.so3.exp([0, 0, 0.2 * (5 - 2 * 1.0999)])).max()
+    assert off > 1e-6 and passed.estimate_error().y > 0.5 * off
+    # Where a step ends at the jump, the run is right.
+    assert run(1.0999, [1.0999]).estimate_error().y < 1e-11
+    if method.startswith("rkmk"):  # others have a stage at an end of a step, where f is 0
+        assert run(1.0).estimate_error().y < 1e-11
 
 
 @pytest.mark.parametrize("method", ["magnus4", "magnus6", "magnus8", "cfm4-2", "cfm6-5", "cayley-magnus4"])

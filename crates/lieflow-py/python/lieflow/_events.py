@@ -65,7 +65,7 @@ class Event:
         change(t, y, *args) returns the new y. The run goes on from it. It must be on M. The event and a row of ``t_eval`` at
         that time have the y before it; ``sol`` and the row at the end of the step have the new one. Of a problem y is the
         array of the numbers of its state, in the order of :attr:`lieflow.Integrator.state`; a complex state is a complex
-        array.
+        array. Of :class:`lieflow.DrivenBody` these are the attitude by columns and the momentum in space.
     points : int, optional
         At how many points of each step g is evaluated. The default depends on g.
     name : str, optional

@@ -18,6 +18,7 @@ __all__ = [
     "MatrixGroup",
     "Model",
     "Problem",
+    "FINER",
     "SHORT_STEPS",
     "SampledField",
     "Scene",
@@ -29,7 +30,11 @@ __all__ = [
     "expm",
     "expm_complex",
     "kinds",
+    "is_elsewhere",
+    "near_ends",
     "other_tolerance",
+    "search_step",
+    "stays",
     "se3_cay",
     "se3_ccsk123",
     "se3_ccsk321",
@@ -52,6 +57,7 @@ __all__ = [
 ]
 LAST_DIGITS: float
 SHORT_STEPS: int
+FINER: float
 __version__: str
 
 def so3_exp(u: ArrayLike, out: _Array | None = None) -> _Array: ...
@@ -239,6 +245,10 @@ def kinds() -> list[dict[str, Any]]: ...
 def bundled() -> list[str]: ...
 def check_method(method: str) -> str: ...
 def other_tolerance(rtol: float, atol: float) -> float: ...
+def search_step(length: float, largest: float) -> float: ...
+def is_elsewhere(distance: float, known: float) -> bool: ...
+def stays(finer: float, distance: float) -> bool: ...
+def near_ends(t_span: tuple[float, float], dt: float) -> list[float]: ...
 def time_to_search(steps: int, seconds: float) -> float | None: ...
 def solve(
     space: Space,

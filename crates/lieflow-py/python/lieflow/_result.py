@@ -350,7 +350,8 @@ class Result:
         """Return how far the outputs and the events are from the exact motion, or from a second run.
 
         Where steps have one size, the second run has each step in two parts, from a third to two thirds of it: a torque whose
-        period divides the steps has other phases there. Else it has a tenth of the tolerances; where these are the least that
+        period divides the steps has other phases there. Where it is quick, a run in steps that end elsewhere looks for jumps of f
+        that both passed over. Else it has a tenth of the tolerances; where these are the least that
         rounding allows, ten times the tolerances. Then the estimate is mostly too large.
         Rounding that both share is seen by a third run, from a start whose numbers are changed by 64 ε: the estimate is no
         smaller than a sixteenth of its distance, or than all of it where that is a tenth of the size of the points.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from time import thread_time
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,11 @@ from ._errors import ArgumentError, RunError
 from ._result import Result
 
 __all__ = ["Repeated", "beyond", "changed", "finer", "second"]
+
+#: A relative distance of this size is rounding.
+ROUNDING = 1e-12
+#: Further runs take so many seconds at most.
+PATIENCE = 3.0
 
 #: What a run is compared with, its result, and the first run again from a changed start.
 Repeated = tuple[str, Result, Result | None]
@@ -63,11 +69,59 @@ def second(run: Callable[..., Result], settings: dict[str, Any], first: Result, 
             found_by = by_tolerance
     if other.status < 0 or len(other.t) < len(first.t):
         raise RunError(f"no estimate: {found_by} ended at t = {other.t_end}: {other.message}")
+    grown: Result | None = None
     try:
         grown = run({**settings, "dense_output": False}, _lieflow.LAST_DIGITS)
     except (RunError, ArgumentError):  # it is no start, for its digits
-        return found_by, other, None
-    return found_by, other, grown if len(grown.t) == len(first.t) else None
+        pass
+    same = grown is not None and len(grown.t) == len(first.t)
+    found = (found_by, other, grown if same else None)
+    return _searched(run, {**other_settings, **limits}, first, found, t0, seconds)
+
+
+def _apart(a: Result, b: Result) -> float:
+    """Return the largest distance of the outputs of two runs, or of their ends, relative to the size of the first."""
+    one, other = (a.y, b.y) if len(a.t) else (a.y_end, b.y_end)
+    pairs = [(one, other)] if isinstance(one, np.ndarray) else [(one[name], other[name]) for name in one.keys()]
+    distances = []
+    for x, y in pairs:
+        size = np.abs(x).max(initial=0.0)
+        distances.append(float(np.abs(x - y[: len(x)]).max(initial=0.0) / (size if size > 0.0 else 1.0)))
+    return max(distances)
+
+
+def _searched(
+    run: Callable[..., Result], settings: dict[str, Any], first: Result, found: Repeated, t0: float, seconds: float
+) -> Repeated:
+    """Return a run whose steps end elsewhere, where it tells that f jumps; else what was found.
+
+    Two runs with the same ends of steps may both pass over a jump. Where steps of the run end at the jumps, it is right: steps
+    that have short parts at their ends, too, change nothing.
+    """
+    found_by, other, grown = found
+    quick = _lieflow.time_to_search(first.nsteps, seconds) is not None
+    if first._tolerances is not None or first.status != 0 or not quick:
+        return found
+    size = _lieflow.search_step(abs(first.t_end - t0), first.largest_step)
+    known = max(_apart(first, other), ROUNDING, 0.0 if grown is None else _apart(first, grown))
+    clock = thread_time()
+    search = run({**settings, "dt": size})
+    spent = thread_time() - clock
+    if search.status < 0 or not _lieflow.is_elsewhere(_apart(first, search), known):
+        return found
+    nearer = search
+    if _lieflow.FINER * spent < PATIENCE:
+        size /= _lieflow.FINER
+        nearer = run({**settings, "dt": size})
+    # Points within a step may have a lower order, which is no jump.
+    if nearer.status < 0 or not _lieflow.is_elsewhere(_apart(first, nearer), known):
+        return found
+    h = first.largest_step
+    if not _lieflow.stays(_apart(first, nearer), _apart(first, search)) and abs(first.t_end - t0) > 0.95 * h * first.nsteps - h:
+        parts = run({**settings, "dt": h, "kinks": [*settings["kinks"], *_lieflow.near_ends((t0, first.t_end), h)]})
+        if parts.status >= 0 and not _lieflow.is_elsewhere(_apart(first, parts), known):
+            return found
+    return f"a run in steps of {size:.2g}: f seems to jump in a step, and its jumps are no stops", nearer, grown
 
 
 def finer(settings: dict[str, Any], first: Result, t0: float, seconds: float) -> tuple[str, dict[str, Any]]:
