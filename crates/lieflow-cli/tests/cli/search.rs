@@ -127,6 +127,19 @@ fn runs_by_length_pass_a_jump_in_short_steps() {
     }
 }
 
+/// A search that does not end has met something: no digit is stated.
+#[test]
+fn a_search_that_takes_far_longer_leaves_the_error_unknown() {
+    let folder = Folder::new();
+    let field = "0.01*(sign(t-4.44)-sign(t-4.44-0.01))/2";
+    let time = "rtol = 1e-4\ntolerance = \"per-length\"";
+    let (told, digits, rows) =
+        run(&folder, &scene(field, "[0, 5]", &named("cf-ls4"), time, "count = 10"));
+    let [_, end] = rows[rows.len() - 1];
+    let off = (end - 1.0001_f64).abs();
+    assert!(digits.is_none_or(|digits| digits as f64 <= 0.7 - off.log10()), "{off:e}: {told}");
+}
+
 /// What an advice promises, its run states, too.
 #[test]
 fn an_advice_is_searched_like_a_run() {

@@ -17,6 +17,8 @@ use crate::output::{Accuracy, FoundBy, number, rough};
 const MISJUDGED: f64 = 3.0;
 /// Another run in half of these short steps differs by less than this part of it where it was something short.
 const RESOLVED: f64 = 1e-3;
+/// A search that takes so many times longer than is expected has met something.
+const HARD: f64 = 10.0;
 /// The CPU time of a run below this many seconds says little of that of another. Then a run in short steps is begun in any
 /// case, and ends at its deadline.
 const BRIEF: f64 = 0.015;
@@ -207,7 +209,19 @@ impl Check<'_> {
                 }));
             }
             Ok(Found::Elsewhere { distance, is_at_end, last }) => (distance, is_at_end, last),
-            Err(_) if cpu_seconds() > until || self.is_stopped() => return Ok(None),
+            Err(_) if self.is_stopped() => return Ok(None),
+            Err(_) if cpu_seconds() > until => {
+                // A search that takes far longer than the run tells of has met something, such as a jump that takes many steps.
+                let steps = self.own.steps.max(1) as f64;
+                let expected = seconds * (SHORT_STEPS as f64 + steps) / steps;
+                return match most * MISJUDGED > HARD * expected {
+                    true => Err(format!(
+                        "in steps of at most {} the run takes far longer: its own steps pass over something hard",
+                        number(size)
+                    )),
+                    false => Ok(None),
+                };
+            }
             Err(why) => {
                 return Err(format!("in steps of at most {} the run fails: {why}", number(size)));
             }
