@@ -348,7 +348,15 @@ fn the_exact_map_of_whole_cells_is_a_power() {
 #[test]
 fn steps_between_magnets_keep_their_order() {
     for method in ["rkmk4", "cg4", "rk4", "rkmk dop853 exp"] {
-        for (length, span) in [(0.7, [0.0, 15.0]), (1.3, [0.3, 20.0]), (0.7, [1000.25, 1020.25])] {
+        for (length, span) in [
+            (0.7, [0.0, 15.0]),
+            (1.3, [0.3, 20.0]),
+            (0.7, [1000.25, 1020.25]),
+            // Backward, also from where a magnet or a cell ends.
+            (1.3, [20.0, 0.3]),
+            (0.7, [11.4, 0.25]),
+            (0.7, [11.0, 0.0]),
+        ] {
             let keys = format!(
                 "kind = \"beam-line\"\nparticle = [1, 1, 0, 0]\nelements = [\n\
                  {{ kind = \"quadrupole\", length = 0.4, k = 1.2 }},\n\
