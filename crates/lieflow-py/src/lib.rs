@@ -52,5 +52,6 @@ fn _lieflow(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add("LAST_DIGITS", lieflow_model::problem::LAST_DIGITS)?;
     m.add("SHORT_STEPS", lieflow_model::problem::SHORT_STEPS)?;
     m.add("FINER", lieflow_model::problem::FINER)?;
+    m.add("GRADED_MOST", lieflow_model::problem::GRADED_MOST)?;
     m.add("__version__", env!("CARGO_PKG_VERSION"))
 }

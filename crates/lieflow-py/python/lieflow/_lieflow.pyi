@@ -19,6 +19,7 @@ __all__ = [
     "Model",
     "Problem",
     "FINER",
+    "GRADED_MOST",
     "SHORT_STEPS",
     "SampledField",
     "Scene",
@@ -58,6 +59,7 @@ __all__ = [
 LAST_DIGITS: float
 SHORT_STEPS: int
 FINER: float
+GRADED_MOST: int
 __version__: str
 
 def so3_exp(u: ArrayLike, out: _Array | None = None) -> _Array: ...

@@ -117,7 +117,10 @@ def _searched(
     if nearer.status < 0 or not _lieflow.is_elsewhere(_apart(first, nearer), known):
         return found
     h = first.largest_step
-    if not _lieflow.stays(_apart(first, nearer), _apart(first, search)) and abs(first.t_end - t0) > 0.95 * h * first.nsteps - h:
+    is_nearer = not _lieflow.stays(_apart(first, nearer), _apart(first, search))
+    # Knots have not made the steps shorter.
+    is_grid = abs(first.t_end - t0) > 0.95 * h * first.nsteps - h
+    if is_nearer and is_grid and first.nsteps <= _lieflow.GRADED_MOST:
         parts = run({**settings, "dt": h, "kinks": [*settings["kinks"], *_lieflow.near_ends((t0, first.t_end), h)]})
         if parts.status >= 0 and not _lieflow.is_elsewhere(_apart(first, parts), known):
             return found

@@ -9,7 +9,7 @@ use lieflow_timing::cpu_seconds;
 
 use super::unseen::{Found, with_rounding};
 use super::{Check, Ends, LONG, OWN, Way};
-use crate::cmd::apart::{Apart, Size, parts_of};
+use crate::cmd::apart::{Size, parts_of};
 use crate::output::{Accuracy, Distance, FoundBy, number, rough};
 
 /// A larger relative error is worth a warning.
@@ -117,11 +117,7 @@ impl Check<'_> {
                 Size { largest: size.largest.min(largest), middle: size.middle.min(largest) }
             })
             .collect();
-        let apart = |others: &[Vec<f64>]| {
-            let pairs = times.iter().zip(rows.iter().zip(others));
-            let pairs = pairs.map(|(t, (row, other))| (*t, [&row[..], &other[..]]));
-            Apart::of_rows(self.watch, &sizes, pairs)
-        };
+        let apart = |others: &[Vec<f64>]| self.rows_apart(times, [&rows, others], &sizes);
         let exact = || times.iter().map(|t| self.watch.exact(*t)).collect::<Option<Vec<_>>>();
         // What rounding does to it, as `moved` of the run.
         let changed = || {

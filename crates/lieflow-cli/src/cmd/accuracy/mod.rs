@@ -440,6 +440,13 @@ impl<'a> Check<'a> {
         }
     }
 
+    /// How far rows of two runs at these times are apart, beside these sizes.
+    fn rows_apart(&self, times: &[f64], [a, b]: [&[Vec<f64>]; 2], sizes: &[Size]) -> Apart {
+        let pairs = times.iter().zip(a.iter().zip(b));
+        let pairs = pairs.map(|(t, (a, b))| (*t, [&a[..], &b[..]]));
+        Apart::of_rows(self.watch, sizes, pairs)
+    }
+
     /// How far the run is from another one that has rows at the same `times`, and the number of steps of that. It
     /// reaches each row by a step, so that an error of the continuous extension is seen.
     fn beside(&self, way: Way, times: &[f64]) -> Result<(Apart, u64), String> {

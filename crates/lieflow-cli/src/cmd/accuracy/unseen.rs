@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use lieflow::problems::explained_by_rounding;
 use lieflow_model::problem::{
-    FINER, LAST_DIGITS, SHORT_STEPS, is_elsewhere, search_step, stays, time_to_search,
+    FINER, GRADED_MOST, LAST_DIGITS, SHORT_STEPS, is_elsewhere, search_step, stays, time_to_search,
 };
 use lieflow_timing::cpu_seconds;
 
@@ -130,14 +130,12 @@ impl Check<'_> {
         let clock = Instant::now();
         let from = if self.is_by_error(way) { times.len().saturating_sub(1) } else { 0 };
         let (times, rows) = (&times[from..], &rows[from..]);
-        let distances = |others: &[Vec<f64>]| {
-            let pairs = times.iter().zip(rows.iter().zip(others));
-            let pairs = pairs.map(|(t, (row, other))| (*t, [&row[..], &other[..]]));
-            let apart = Apart::of_rows(self.watch, sizes, pairs);
+        let distances = |a: &[Vec<f64>], b: &[Vec<f64>]| {
+            let apart = self.rows_apart(times, [a, b], sizes);
             self.judge((FoundBy::ShortSteps, 1.0), &apart, moved, clock)
         };
-        let (mut others, taken) = self.rows_at(way, times)?;
-        let found = distances(&others);
+        let (others, taken) = self.rows_at(way, times)?;
+        let found = distances(rows, &others);
         let growth = (moved / (OF_CHANGE * LAST_DIGITS)).max(1.0);
         let rounding = explained_by_rounding(taken.steps, growth);
         let is_far = |found: f64, known: f64| is_elsewhere(found, known.max(rounding));
@@ -145,7 +143,7 @@ impl Check<'_> {
         if !is_at_end && !is_far(found.relative(), known.relative()) {
             return Ok(Found::Nothing);
         }
-        let last = others.pop().unwrap_or_default();
+        let last = others.last().cloned().unwrap_or_default();
         if self.is_by_error(way) {
             return Ok(Found::Elsewhere { distance: found, is_at_end, last });
         }
@@ -153,27 +151,28 @@ impl Check<'_> {
         let changed = self.changed_start(way, LAST_DIGITS);
         let changed = changed.and_then(|start| self.rows_from(Some(start), way, times, true).ok());
         if let Some((changed, _)) = changed
-            && !is_elsewhere(found.relative(), self.rows_apart(times, [&others, &changed], sizes))
+            && !is_elsewhere(found.relative(), distances(&others, &changed).relative())
         {
             return Ok(Found::Nothing);
         }
         let finer = self.rows_at(Way { factor: way.factor / FINER, ..way }, times);
-        let nearer = match finer.map(|(finer, _)| distances(&finer)) {
+        let nearer = match finer.map(|(finer, _)| distances(rows, &finer)) {
             Ok(distance) if stays(distance.relative(), found.relative()) => {
                 return Ok(Found::Elsewhere { distance, is_at_end, last });
             }
             nearer => nearer.unwrap_or(found),
         };
         // Where steps end at the jumps, so do their parts.
-        let parts = self.rows_at(Way { graded: true, ..own }, times);
-        let is_right = |parts: &[Vec<f64>]| {
-            let apart = self.rows_apart(times, [rows, parts], sizes);
-            !is_far(apart, known.relative())
+        let [t0, end] = self.run.t_span;
+        let steps = (end - t0).abs() / (own.factor * self.scene().grid.h().abs());
+        let parts = match steps <= GRADED_MOST as f64 {
+            true => self.rows_at(Way { graded: true, ..own }, times).ok(),
+            false => None,
         };
-        Ok(match parts {
-            Ok((parts, _)) if is_right(&parts) => Found::Nothing,
-            _ => Found::Jumps(nearer),
-        })
+        let is_right = parts.is_some_and(|(parts, _)| {
+            !is_far(distances(rows, &parts).relative(), known.relative())
+        });
+        Ok(if is_right { Found::Nothing } else { Found::Jumps(nearer) })
     }
 
     /// What a search finds beside the run itself: the distances of the rows from those of the search, with a sentence. A pulse
@@ -259,14 +258,6 @@ impl Check<'_> {
             ),
         };
         Ok(Some(PassedOver { accuracy: found, warning: Some(warning), note: None }))
-    }
-
-    /// The largest relative distance of rows of two runs.
-    fn rows_apart(&self, times: &[f64], [a, b]: [&[Vec<f64>]; 2], sizes: &[Size]) -> f64 {
-        let pairs = times.iter().zip(a.iter().zip(b));
-        let pairs = pairs.map(|(t, (a, b))| (*t, [&a[..], &b[..]]));
-        let apart = Apart::of_rows(self.watch, sizes, pairs);
-        self.judge((FoundBy::ShortSteps, 1.0), &apart, 0.0, Instant::now()).relative()
     }
 
     fn is_stopped(&self) -> bool {
