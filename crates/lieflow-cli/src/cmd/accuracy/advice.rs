@@ -144,7 +144,7 @@ impl Check<'_> {
         let accuracy = self.judge((found_by, share), &apart, moved, clock);
         // Two runs may have the same rounding.
         let is_good = |accuracy: &Accuracy| moved <= POOR && accuracy.relative() <= POOR;
-        let search = self.search(way, taken.largest).filter(|_| !self.is_exact);
+        let search = self.search(way, taken).filter(|_| !self.is_exact);
         let accuracy = match search.filter(|_| is_good(&accuracy)) {
             None => Some(accuracy),
             Some((_, search)) => {
@@ -160,7 +160,7 @@ impl Check<'_> {
 
     /// A limit of the step size that would do at these times, and the digits that it gives.
     fn shorter_steps(&self, times: &[f64]) -> Option<String> {
-        let (short, way) = self.short_steps(OWN, self.own.largest)?;
+        let (short, way) = self.short_steps(OWN, self.own)?;
         let accuracy = self.tried(way, times)??;
         let limit = self.limit_of_steps(short);
         Some(format!("{limit} would give {}", accuracy.digits_in_words()))

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 use lieflow::catalog::MethodSpec;
 use lieflow::problems::explained_by_rounding;
-use lieflow::solve::{Next, Stats, Status};
+use lieflow::solve::{Next, RunError, Stats, Status};
 use lieflow::tolerance::Tolerance;
 use lieflow::{SaveAt, StepControl, TimeGrid};
 use lieflow_model::problem::{
@@ -27,7 +27,7 @@ use super::apart::{
 };
 use super::shown::{Choice, Shown};
 use super::watch::Watch;
-use crate::output::{Accuracy, Distance, FoundBy, PartError, RowSample, ShownRows, rough};
+use crate::output::{Accuracy, Distance, FoundBy, PartError, RowSample, ShownRows, number, rough};
 
 /// A run that took longer is not made a second time, but where that is asked for.
 pub(super) const LONG: Duration = Duration::from_secs(10);
@@ -101,6 +101,8 @@ struct Way {
     factor: f64,
     /// The limit of steps that are chosen by their error.
     largest: Option<f64>,
+    /// The largest number of attempts within that limit.
+    attempts: u64,
     /// Are steps of one size split?
     split: bool,
     /// Do steps of one size have short parts at both ends?
@@ -124,6 +126,7 @@ const OWN: Way = Way {
     default: false,
     factor: 1.0,
     largest: None,
+    attempts: StepControl::MAX_STEPS,
     split: false,
     graded: false,
     tolerances: None,
@@ -378,7 +381,7 @@ impl<'a> Check<'a> {
 
     /// The plan of a run to time t.
     fn plan(&self, way: Way, t: f64) -> Result<Plan<'static>, String> {
-        let Way { default, factor, largest, split, graded, tolerances, ends } = way;
+        let Way { default, factor, largest, attempts, split, graded, tolerances, ends } = way;
         let plan = match default {
             true => {
                 let order = self.watch.model.order(&self.method(way));
@@ -389,7 +392,7 @@ impl<'a> Check<'a> {
         let mut plan = plan.map_err(|error| error.to_string())?;
         if let (Steps::ByError { control, .. }, Some(_)) = (&mut plan.steps, largest) {
             // The limit is that of the longer steps of the run.
-            let most = control.clone().max_steps(StepControl::MAX_STEPS);
+            let most = control.clone().max_steps(attempts);
             *control = most.map_err(|error| error.to_string())?;
         }
         plan.stops.kinks.extend(match ends {
@@ -433,7 +436,12 @@ impl<'a> Check<'a> {
         let plan = self.plan(way, self.end())?;
         let plan = Plan { save, times_by_steps, cancel: Some(&cancel), start, ..plan };
         let outcome = self.watch.model.drive(&self.method(way), plan, &mut kept);
-        let Outcome { status, stats, .. } = outcome.map_err(|error| error.to_string())?;
+        let Outcome { status, stats, .. } = outcome.map_err(|error| match error {
+            RunError::TooManySteps { t, max_steps, .. } if way.largest.is_some() => {
+                format!("{max_steps} attempts get no farther than t = {}", number(t))
+            }
+            error => error.to_string(),
+        })?;
         match status {
             Status::Finished => Ok((kept.rows, Taken::of(&stats, self.run.t_span))),
             _ => Err("it was stopped".into()),

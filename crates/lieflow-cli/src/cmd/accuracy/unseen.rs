@@ -9,7 +9,7 @@ use lieflow_model::problem::{
 };
 use lieflow_timing::cpu_seconds;
 
-use super::{Check, NO_DIGIT, OWN, Size, Way};
+use super::{Check, NO_DIGIT, OWN, Size, Taken, Way};
 use crate::cmd::apart::Apart;
 use crate::output::{Accuracy, FoundBy, number, rough};
 
@@ -17,8 +17,8 @@ use crate::output::{Accuracy, FoundBy, number, rough};
 const MISJUDGED: f64 = 3.0;
 /// Another run in half of these short steps differs by less than this part of it where it was something short.
 const RESOLVED: f64 = 1e-3;
-/// A search that takes so many times longer than is expected has met something.
-const HARD: f64 = 10.0;
+/// A search that takes so many times more attempts than is expected has met something, such as a jump that takes many steps.
+const HARD: u64 = 10;
 /// The CPU time of a run below this many seconds says little of that of another. Then a run in short steps is begun in any
 /// case, and ends at its deadline.
 const BRIEF: f64 = 0.015;
@@ -82,23 +82,24 @@ impl Check<'_> {
         way.default || self.scene().tolerances().is_some()
     }
 
-    /// A run in short steps, and their size, where those of this run, of up to `largest`, are larger.
-    pub(super) fn short_steps(&self, way: Way, largest: f64) -> Option<(f64, Way)> {
+    /// A run in short steps, and their size, where the largest that this run took is larger.
+    pub(super) fn short_steps(&self, way: Way, taken: Taken) -> Option<(f64, Way)> {
         let short = self.short_step();
+        let attempts = HARD * (SHORT_STEPS + taken.steps);
         let way = match self.is_by_error(way) {
-            true => Way { largest: Some(short), ..way },
+            true => Way { largest: Some(short), attempts, ..way },
             false => Way { factor: short / self.scene().grid.h().abs(), ..way },
         };
-        (2.0 * short < largest).then_some((short, way))
+        (2.0 * short < taken.largest).then_some((short, way))
     }
 
-    /// A run in short steps that shows what the steps of this run, of up to `largest`, have passed over; and their size.
-    pub(super) fn search(&self, way: Way, largest: f64) -> Option<(f64, Way)> {
+    /// A run in short steps that shows what the steps that this run took have passed over; and their size.
+    pub(super) fn search(&self, way: Way, taken: Taken) -> Option<(f64, Way)> {
         if self.is_by_error(way) {
-            return self.short_steps(way, largest);
+            return self.short_steps(way, taken);
         }
         let [t0, end] = self.run.t_span;
-        let size = search_step((end - t0).abs(), largest);
+        let size = search_step((end - t0).abs(), taken.largest);
         Some((size, Way { factor: size / self.scene().grid.h().abs(), ..way }))
     }
 
@@ -188,7 +189,7 @@ impl Check<'_> {
         if self.is_exact || self.ended_by_event {
             return Ok(None);
         }
-        let search = self.search(OWN, self.own.largest).zip(self.time_to_search(seconds));
+        let search = self.search(OWN, self.own).zip(self.time_to_search(seconds));
         let Some(((size, way), most)) = search else { return Ok(None) };
         // The estimate of its time may be wrong: within a pulse f may be dear, or steps small.
         let until = cpu_seconds() + most * MISJUDGED;
@@ -208,19 +209,7 @@ impl Check<'_> {
                 }));
             }
             Ok(Found::Elsewhere { distance, is_at_end, last }) => (distance, is_at_end, last),
-            Err(_) if self.is_stopped() => return Ok(None),
-            Err(_) if cpu_seconds() > until => {
-                // A search that takes far longer than the run tells of has met something, such as a jump that takes many steps.
-                let steps = self.own.steps.max(1) as f64;
-                let expected = seconds * (SHORT_STEPS as f64 + steps) / steps;
-                return match most * MISJUDGED > HARD * expected {
-                    true => Err(format!(
-                        "in steps of at most {} the run takes far longer: its own steps pass over something hard",
-                        number(size)
-                    )),
-                    false => Ok(None),
-                };
-            }
+            Err(_) if cpu_seconds() > until || self.is_stopped() => return Ok(None),
             Err(why) => {
                 return Err(format!("in steps of at most {} the run fails: {why}", number(size)));
             }
@@ -241,7 +230,7 @@ impl Check<'_> {
             half.map_or(0.0, |half| self.ends_apart([[&last, &half]].into_iter()).relative());
         let warning = match moved < RESOLVED * found.relative() {
             true => {
-                let smaller = match self.short_steps(OWN, self.own.largest) {
+                let smaller = match self.short_steps(OWN, self.own) {
                     Some((short, _)) => {
                         format!("Give {} in [time], or less", self.limit_of_steps(short))
                     }
@@ -287,7 +276,7 @@ impl Check<'_> {
         }
         // One of the two may have passed over a short pulse. Runs in short steps do not.
         let in_short_steps = || {
-            let (_, short) = self.short_steps(OWN, self.own.largest)?;
+            let (_, short) = self.short_steps(OWN, self.own)?;
             let most = MISJUDGED * self.time_to_search(seconds)?;
             let ends = [0.0, LAST_DIGITS].map(|change| self.changed_end(short, change, most));
             let [Some(one), Some(other)] = ends else { return None };
