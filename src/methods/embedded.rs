@@ -89,13 +89,6 @@ pub(super) fn ratio_of_relative<S: Real, M: Metric<Scalar = S>>(
 /// the ratio were 0, the next step would have five times the size. Where the tolerance is near the rounding, that step would
 /// be rejected.
 const ROUNDING: f64 = 0.1;
-/// The same of a step by [`Rule::PerLength`] that moves the point by less than [`SHORT`] of its size, and whose tolerance is below
-/// [`FEW`] roundings of the point: so it grows.
-const ROUNDING_OF_SHORT: f64 = 1e-3;
-const SHORT: f64 = 1e-4;
-const FEW: f64 = 1024.0;
-/// Distances below so many roundings may be rounding: of any step, and of one that is so short.
-const ROUNDINGS: [f64; 2] = [8.0, 64.0];
 
 /// The ratio of `weight` times the distance of `other` from the result `to` of a step. A distance that may be rounding
 /// counts as [`ROUNDING`] at most.
@@ -121,13 +114,6 @@ pub(super) fn ratio_between<S: Real, M: Metric<Scalar = S>>(
     }
     // The rounding of a large part says nothing of the others.
     let relative = weight * to.error_ratio(Gap::to(other), &mut Scales::relative());
-    let moved = || to.error_ratio(Gap::to(from), &mut Scales::relative());
-    // relative/ratio is the tolerance, relative to the point.
-    let is_short = tolerance.rule() == Rule::PerLength
-        && (relative - S::lit(FEW * S::EPSILON) * ratio).all_below(0.0)
-        && moved().all_below(SHORT);
-    let most = if is_short { ROUNDING_OF_SHORT } else { ROUNDING };
-    let rounding = ROUNDINGS[usize::from(is_short)] * S::EPSILON;
-    let may_be_rounding = (relative - S::lit(rounding)).all_below(0.0);
-    if may_be_rounding { smaller(ratio, S::lit(most)) } else { ratio }
+    let may_be_rounding = (relative - S::lit(8.0 * S::EPSILON)).all_below(0.0);
+    if may_be_rounding { smaller(ratio, S::lit(ROUNDING)) } else { ratio }
 }

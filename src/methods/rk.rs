@@ -11,9 +11,12 @@ use super::{Embedded, Facts, MapCounts, Method, Step, StepCost, Tableau, Within}
 use crate::error::{Error, StepError};
 use crate::problems::FieldStore;
 use crate::problems::{Ambient, PointOf, ScalarOf};
-use crate::scalar::Real;
+use crate::scalar::{Real, smaller};
 use crate::space::{Gap, LinearSpace, Metric};
 use crate::tolerance::{Rule, Tolerance, ratio};
+
+/// The largest error ratio of a step by [`Rule::PerLength`]: its length may be 0.
+const UNMOVED: f64 = 1e30;
 
 /// An explicit Runge–Kutta method on the entries of y.
 #[derive(Clone, Copy, Debug)]
@@ -186,7 +189,11 @@ impl<P: Ambient, const S: usize> Embedded<P> for Rk<S> {
         let size = |weights: &[f64; S]| {
             z.set_terms(step.h, &weights[..stages], k);
             match tolerance.rule() {
-                Rule::PerLength => ratio(z.size(), tolerance.per_length(to.distance(from))),
+                // Next to a jump a step may be so short that it does not move the point.
+                Rule::PerLength => smaller(
+                    Real::lit(UNMOVED),
+                    ratio(z.size(), tolerance.per_length(to.distance(from))),
+                ),
                 Rule::PerStep => {
                     to.error_ratio(Gap::of(z).of_step_from(from), &mut tolerance.scales())
                 }

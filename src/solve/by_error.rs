@@ -11,8 +11,16 @@ use super::streak::{Reach, Run};
 use super::timeline::{Chooser, Pacer, Timeline, Turns};
 use crate::error::StepError;
 use crate::methods::{Attempts, FARTHEST, Resize, Step, Streak};
-use crate::tolerance::Weight;
+use crate::tolerance::{Rule, Weight};
 
+/// By [`Rule::PerLength`] a step below this part of the largest one of the run is a short one. Behind a jump of f, the rounding of
+/// short steps keeps them short, since it does not fall with their length.
+const SHORT: f64 = 1e-4;
+/// Of so many short steps one is followed by a step of this many times its size.
+const SHORT_STEPS: u64 = 8;
+const SHORT_GROWTH: f64 = 2.0;
+/// A short step that would be lost in the rounding of t has this size, in roundings of t.
+const LEAST_SIZE: f64 = 8.0;
 /// The number of rejections in a row that ends a run.
 const REJECTIONS_MAX: u32 = 60;
 /// The radians by which an exact step with events, or without an end, turns.
@@ -124,6 +132,10 @@ impl Timeline {
                 return Err(self.too_many(size, max_steps));
             }
             if end == self.t {
+                if !is_whole && in_a_row == 0 && self.is_short(h) {
+                    (is_whole, h) = (true, LEAST_SIZE * f64::EPSILON * self.t.abs());
+                    continue;
+                }
                 // A step that failed, if it was to end beyond here, is the reason.
                 let Pacer::ByError(Chooser { wall, obstacle, .. }) = self.pacer else {
                     return Ok(());
@@ -165,12 +177,16 @@ impl Timeline {
                     if in_a_row > 0 && size < smallest {
                         self.stats.after_rejection = Some([end, size]);
                     }
+                    let grows = in_a_row == 0
+                        && self.is_short(size)
+                        && self.stats.accepted.is_multiple_of(SHORT_STEPS);
                     let Pacer::ByError(chooser) = &mut self.pacer else { return Ok(()) };
                     let passed = |wall: &f64| if forward { end >= *wall } else { end <= *wall };
                     chooser.wall = chooser.wall.filter(|wall| !passed(wall));
                     let is_near = |wall: f64| size > NEAR_WALL * (wall - end).abs();
                     chooser.controller.hold |= chooser.wall.is_some_and(is_near);
                     let factor = chooser.controller.accept(ratio);
+                    let factor = if grows { factor.max(SHORT_GROWTH) } else { factor };
                     let next = size * factor;
                     // A step that was shortened to end at `stop` says nothing against the size before, and one that
                     // goes half the way nothing against the other half.
@@ -296,6 +312,8 @@ impl Timeline {
         let most =
             self.turns.as_ref().map_or(most, |turns| most.min(turns.next.saturating_sub(accepted)));
         let most = most.min(noise.next.saturating_sub(accepted));
+        let most =
+            if self.is_short(h) { most.min(SHORT_STEPS - accepted % SHORT_STEPS) } else { most };
         let most = most.min(self.attempts_left(control.max_steps)).max(1);
         Streak { most, size, kept: controller.kept, stop, time, resize: Some(sizes) }
     }
@@ -311,6 +329,12 @@ impl Timeline {
         *accepted += tried.accepted;
         *smallest_step = smallest_step.min(least);
         *largest_step = largest_step.max(largest);
+    }
+
+    /// Is a step of this size a short one, whose error relative to its length may be rounding?
+    fn is_short(&self, size: f64) -> bool {
+        let Pacer::ByError(Chooser { control, .. }) = &self.pacer else { return false };
+        control.tolerance.rule() == Rule::PerLength && size < SHORT * self.stats.largest_step
     }
 
     /// Is no attempt to follow a failed one?

@@ -222,6 +222,7 @@ fn jumps_without_a_stop_are_passed() {
             LowStorage(LS32),
             Rkmk::new(DOPRI5, Exp),
             Rkmk::new(DOP853, Exp),
+            Rkmk::new(DOP853, Exp),
             Rk(DOPRI5),
             Rk(DOP853)
         ];
@@ -231,7 +232,7 @@ fn jumps_without_a_stop_are_passed() {
 /// By the length of a step no step over a jump is short enough: it counts as a whole one, and the steps grow again.
 #[test]
 fn jumps_are_passed_by_the_length_of_steps() {
-    for (at, after) in [(0.4046, 1.0), (0.7, -30.0)] {
+    for (at, after) in [(0.4046, 1.0), (0.7, -30.0), (0.25, -2.0)] {
         let problem = spin(move |t| if t < at { 0.01 } else { after });
         let exact = 0.01 * at + after * (1.0 - at);
         macro_rules! pass {
@@ -252,7 +253,10 @@ fn jumps_are_passed_by_the_length_of_steps() {
             Doubling(CommutatorFree(CF4)),
             CommutatorFree(CF43),
             LowStorage(LS32),
-            Rkmk::new(DOPRI5, Exp)
+            Rkmk::new(DOPRI5, Exp),
+            Rkmk::new(DOP853, Exp),
+            Rk(DOPRI5),
+            Rk(DOP853)
         ];
     }
 }
