@@ -29,7 +29,7 @@ use core::ops::Range;
 
 use super::output::{AnyOutput, Slot};
 use super::roots;
-use super::search::{Direction, Points, Search, Seen};
+use super::search::{Direction, Points, Search, Seen, is_far};
 use super::stats::RunError;
 use super::timeline::Timeline;
 
@@ -182,6 +182,31 @@ impl EventRule {
         Search { direction, points, is_long, seen, first_step, span, last }
     }
 
+    /// Passes a step at whose end g is `last`, if it needs no search.
+    fn passes(&mut self, span: [f64; 2], last: f64) -> bool {
+        let search = self.search(span, last, (false, false));
+        let passes = last.is_finite() && search.is_idle();
+        if passes {
+            self.seen = search.seen_at_end();
+        }
+        passes
+    }
+
+    /// [`passes`](Self::passes) for nearly all steps, in a third of the instructions.
+    #[inline(always)]
+    fn passes_quickly(&mut self, [start, end]: [f64; 2], last: f64) -> bool {
+        let Seen { value, before, anew, .. } = &mut self.seen;
+        let is_simple = matches!(self.points, Points::AsNeeded) && !self.has_long_steps && !*anew;
+        let Some([older, length]) = before.filter(|_| is_simple) else { return false };
+        let size = (end - start).abs();
+        let passes =
+            *value * last > 0.0 && is_far([*value, last], [older, *value, last], [length, size]);
+        if passes {
+            (*before, *value) = (Some([*value, size]), last);
+        }
+        passes
+    }
+
     /// The value of g at t, if it is finite.
     #[inline]
     fn finite(&self, t: f64, value: f64) -> Result<f64, RunError> {
@@ -240,7 +265,12 @@ impl Events {
     /// Passes a step of a streak, which is not the first step of a run, if no event can have a zero in it. `values` are g
     /// at the end of the step. Returns false if the step needs a search; then nothing is passed.
     #[inline(always)]
-    pub(super) fn pass(&mut self, span: [f64; 2], values: impl Iterator<Item = f64>) -> bool {
+    pub(super) fn pass(&mut self, span: [f64; 2], mut values: impl Iterator<Item = f64>) -> bool {
+        if let [event] = &mut self.all[..]
+            && let Some(last) = values.next()
+        {
+            return event.passes_quickly(span, last) || event.passes(span, last);
+        }
         for (event, last) in self.all.iter_mut().zip(values) {
             if !(last.is_finite() && event.search(span, last, (false, false)).is_idle()) {
                 return false;

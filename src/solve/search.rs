@@ -82,6 +82,17 @@ fn passes(before: f64, after: f64) -> Option<bool> {
     }
 }
 
+/// Are both values of g, at points of a step, far from 0, beside how g bends? It bends as its values at the start of the step
+/// before and at both ends of this step tell, of these sizes.
+#[inline(always)]
+pub(super) fn is_far([a, b]: [f64; 2], [before, first, last]: [f64; 3], sizes: [f64; 2]) -> bool {
+    // Times the length of the step before: a division takes as long as the rest.
+    let [length, size] = sizes;
+    let bend = (last - first) * length - (first - before) * size;
+    let near = if a.abs() < b.abs() { a.abs() } else { b.abs() };
+    near * length > 2.0 * bend.abs()
+}
+
 /// The search for the zeros of one event in a step. It knows numbers only, so it is compiled once.
 pub(super) struct Search {
     pub(super) direction: Direction,
@@ -125,11 +136,8 @@ impl Search {
             (Points::Each(0) | Points::By(_), _) => false,
             (_, None) => true,
             (_, Some([before, length])) => {
-                // Times the length of the step before: a division takes as long as the rest.
-                let size = (end - start).abs();
-                let bend = (last - seen.value) * length - (seen.value - before) * size;
-                let near = if first.abs() < last.abs() { first.abs() } else { last.abs() };
-                near * length <= 2.0 * bend.abs()
+                let sizes = [length, (end - start).abs()];
+                !is_far([first, last], [before, seen.value, last], sizes)
             }
         }
     }
