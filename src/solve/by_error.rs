@@ -45,19 +45,22 @@ struct Sizes {
     stop: f64,
     /// The least and the largest size.
     limits: [f64; 2],
+    /// The largest size so far, where shorter steps than a part of it are counted ([`Timeline::is_short`]).
+    largest: Option<f64>,
 }
 
 impl Sizes {
-    /// The choice of sizes up to `largest`.
+    /// The choice of sizes up to `largest`, after steps of up to `taken`.
     fn new(
         Chooser { controller, control, .. }: &Chooser,
         first: [f64; 2],
         stop: f64,
-        largest: f64,
+        [largest, taken]: [f64; 2],
     ) -> Self {
         let found = Cell::new([f64::INFINITY, 0.0]);
         let limits = [control.min_step, largest];
-        Sizes { controller: *controller, found, first, stop, limits }
+        let largest = (control.tolerance.rule() == Rule::PerLength).then_some(taken);
+        Sizes { controller: *controller, found, first, stop, limits, largest }
     }
 
     /// Notes the size of an accepted step.
@@ -76,7 +79,9 @@ impl Resize for Sizes {
         let next = (size * controller.accept(ratio)).max(least);
         let is_free = next <= largest && (self.stop - end).abs() >= 2.0 * next;
         let size = next.copysign(self.stop - end);
-        if !is_free || end + size == end {
+        // The caller counts short steps.
+        let is_short = |taken: f64| next < SHORT * taken.max(self.found.get()[1]).max(step.h.abs());
+        if !is_free || end + size == end || self.largest.is_some_and(is_short) {
             return None;
         }
         self.note(step.h);
@@ -150,7 +155,8 @@ impl Timeline {
             first_size = first_size.max(size);
             let step = self.step_to(end, end - self.t, jumps && end == stop);
             let Pacer::ByError(chooser) = &self.pacer else { return Ok(()) };
-            let sizes = Sizes::new(chooser, [step.t, self.t], stop, self.largest_size(1.0));
+            let largest = [self.largest_size(1.0), self.stats.largest_step];
+            let sizes = Sizes::new(chooser, [step.t, self.t], stop, largest);
             let streak = self.streak(chooser, (h, end), reach, &sizes);
             let reused = self.cancel.is_some().then(|| run.points().reused());
             let tried = run.attempt(step, end, &streak);

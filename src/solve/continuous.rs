@@ -4,9 +4,10 @@ use super::integrator::Integrator;
 use super::output::Kept;
 use super::solution::Solution;
 use super::stats::RunError;
+use super::stops::{begin_of, epsilon_of_times};
 use crate::error::Error;
 use crate::methods::Method;
-use crate::problems::{PointOf, Problem};
+use crate::problems::{PointOf, Problem, ScalarOf};
 
 /// The continuous solution of a run: a point on M for every time of its span.
 ///
@@ -50,8 +51,11 @@ impl<'a, P: Problem, M: Method<P>> Continuous<'a, P, M> {
 
     /// The first and the last time of the solution.
     pub fn t_span(&self) -> [f64; 2] {
-        let start = self.steps.first().map_or(self.solution.t, |(_, step, _)| step.t);
-        [start, self.solution.t]
+        let first = self.steps.first();
+        let begin = |(until, step, _): &Kept<_>| {
+            begin_of(step.t, [self.run.t(), *until], epsilon_of_times::<ScalarOf<P>>())
+        };
+        [first.map_or(self.solution.t, begin), self.solution.t]
     }
 
     /// The point at t.

@@ -22,8 +22,13 @@ impl Timeline {
         let no_room = (jumps && self.t == self.jumped_at && !self.facts.stages_within)
             || (is_last && self.is_after_jump());
         no_room
-            && unit(self.t, self.t + 0.5 * left) != 0.0
-            && 2.0 * unit(self.t, end).abs() > LOST * tolerance * left.abs()
+            && self.unit(self.t, self.t + 0.5 * left) != 0.0
+            && 2.0 * self.unit(self.t, end).abs() > LOST * tolerance * left.abs()
+    }
+
+    /// [`unit`] of the times of stages.
+    fn unit(&self, t: f64, end: f64) -> f64 {
+        unit([t, end], self.epsilon)
     }
 
     /// The step to `end`, of size h. If f jumps there, no stage is at `end`, and if t is a stop at which f jumps, none is at t.
@@ -34,14 +39,15 @@ impl Timeline {
     /// rounding of t at each of both.
     pub(super) fn step_to(&self, end: f64, mut h: f64, jumps: bool) -> Step<f64> {
         let (n, mut t) = (self.stats.accepted, self.t);
-        let unit = unit(t, end);
+        let unit = self.unit(t, end);
         let is_last = end == self.goal || end == self.t1;
         if self.is_after_jump() && unit != 0.0 {
             if !jumps && !is_last {
                 return Step { n, t: t + MARGIN * unit, h };
             }
             let next = if unit > 0.0 { t.next_up() } else { t.next_down() };
-            let late = if t == 0.0 { unit } else { next - t };
+            let is_coarse = self.epsilon > f64::EPSILON;
+            let late = if t == 0.0 || is_coarse { unit } else { next - t };
             (t, h) = (t + late, h - late);
         }
         if !jumps && (!is_last || self.facts.stages_within) {

@@ -322,7 +322,7 @@ impl Events {
         first_step: bool,
     ) -> Result<(), RunError> {
         self.found.clear();
-        let (start, end) = (times.last.t, times.t);
+        let (start, end) = (times.begun, times.t);
         let turns = times.is_long(times.last.h);
         let Events { all, found, .. } = self;
         for (index, event) in all.iter_mut().enumerate() {

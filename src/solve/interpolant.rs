@@ -10,6 +10,7 @@ use std::sync::Arc;
 
 use super::held::Held;
 use super::stats::RunError;
+use super::stops::{begin_of, epsilon_of_times};
 use crate::actions::Action;
 use crate::error::{Error, StepError};
 use crate::groups::LieAlgebra;
@@ -178,6 +179,8 @@ pub struct Interpolant<'a, P: Problem, M: Method<P>> {
     problem: Held<'a, P>,
     method: Held<'a, M>,
     pieces: Vec<Piece<P>>,
+    /// The start of the run.
+    t0: f64,
     /// The end.
     t: f64,
     y: PointOf<P>,
@@ -187,14 +190,20 @@ impl<'a, P: Problem, M: Method<P>> Interpolant<'a, P, M> {
     pub(super) fn new(
         (problem, method): (Held<'a, P>, Held<'a, M>),
         pieces: Vec<Piece<P>>,
-        (t, y): (f64, PointOf<P>),
+        (t0, (t, y)): (f64, (f64, PointOf<P>)),
     ) -> Self {
-        Interpolant { problem, method, pieces, t, y }
+        Interpolant { problem, method, pieces, t0, t, y }
     }
 
     /// The first and the last time.
     pub fn t_span(&self) -> [f64; 2] {
-        [self.pieces.first().map_or(self.t, |piece| piece.step.t), self.t]
+        let first = self.pieces.first();
+        [first.map_or(self.t, |piece| self.begin(piece)), self.t]
+    }
+
+    /// The time at which this piece begins, if it is the first.
+    fn begin(&self, piece: &Piece<P>) -> f64 {
+        begin_of(piece.step.t, [self.t0, piece.until], epsilon_of_times::<ScalarOf<P>>())
     }
 
     /// The number of steps.
@@ -206,11 +215,11 @@ impl<'a, P: Problem, M: Method<P>> Interpolant<'a, P, M> {
     ///
     /// A run of [`Solve::shared`](super::Solve::shared) borrows neither.
     pub fn into_shared(self) -> Option<Interpolant<'static, P, M>> {
-        let Interpolant { problem, method, pieces, t, y } = self;
+        let Interpolant { problem, method, pieces, t0, t, y } = self;
         match (problem, method) {
             (Held::Shared(problem), Held::Shared(method)) => {
                 let (problem, method) = (Held::Shared(problem), Held::Shared(method));
-                Some(Interpolant { problem, method, pieces, t, y })
+                Some(Interpolant { problem, method, pieces, t0, t, y })
             }
             _ => None,
         }
@@ -314,7 +323,7 @@ where
 {
     /// All its numbers, to store it. [`from_numbers`](Self::from_numbers) makes it again.
     pub fn numbers(&self) -> Vec<f64> {
-        let mut all = vec![self.t];
+        let mut all = vec![self.t0, self.t];
         self.y.clone().each_number(&mut |x| all.push(*x));
         for Piece { until, step: Step { n, t, h }, curve } in &self.pieces {
             let mark = match curve {
@@ -354,7 +363,7 @@ where
             Error::out_of_range("numbers", numbers.len() as f64, expected)
         };
         let mut rest = numbers.iter().copied();
-        let t = rest.next().ok_or_else(wrong)?;
+        let (Some(t0), Some(t)) = (rest.next(), rest.next()) else { return Err(wrong()) };
         let mut complete = true;
         let mut fill = |rest: &mut dyn Iterator<Item = f64>, x: &mut f64| match rest.next() {
             Some(value) => *x = value,
@@ -398,10 +407,10 @@ where
             pieces.push(Piece { until, step, curve });
         }
         let finite = |piece: &Piece<P>| piece.until.is_finite() && piece.step.h.is_finite();
-        if !complete || !t.is_finite() || !pieces.iter().all(finite) {
+        if !complete || !(t0.is_finite() && t.is_finite()) || !pieces.iter().all(finite) {
             return Err(wrong());
         }
         let (problem, method) = (Held::Shared(problem), Held::Shared(method));
-        Ok(Interpolant { problem, method, pieces, t, y })
+        Ok(Interpolant { problem, method, pieces, t0, t, y })
     }
 }

@@ -470,7 +470,7 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
             Err(Interrupted { solution, .. }) => solution.as_deref(),
         };
         let end = solution.map_or((t0, start), |solution| (solution.t, solution.y.clone()));
-        (done, Interpolant::new(held, pieces, end))
+        (done, Interpolant::new(held, pieces, (t0, end)))
     }
 }
 
@@ -511,7 +511,8 @@ where
     /// Sets an adaptive step size, with rtol and atol for all parts of a point.
     pub fn tolerances(self, rtol: f64, atol: f64) -> Self {
         self.with(|control| {
-            Ok(StepControl { tolerance: StepControl::new(rtol, atol)?.tolerance, ..control })
+            let rule = control.tolerance.rule();
+            Ok(control.with_tolerance(StepControl::new(rtol, atol)?.tolerance.by(rule)))
         })
     }
 

@@ -301,7 +301,7 @@ impl Drive<'_> {
 
     fn owner(&self, points: &dyn AnyPoints) -> String {
         let events: Vec<&str> = self.events.all.iter().map(|event| event.name.as_str()).collect();
-        format!("{} {events:?} {:?}", self.times.owner(points), self.save)
+        format!("{} from {:?} {events:?} {:?}", self.times.owner(points), self.t0, self.save)
     }
 
     /// The state of the whole run as bytes.

@@ -103,7 +103,7 @@ impl<'a> Settings<'a> {
             self.save = SaveAt::count(count, self.t_span)?;
         }
         self.save.check(self.t_span)?;
-        self.ends = core::mem::take(&mut self.stops).in_order(self.t_span)?;
+        self.ends = self.stops.clone().in_order(self.t_span)?;
         let Some(mut pace) = self.pace.clone() else {
             let expected = "a step size by `dt`, a number of steps by `steps`, or steps chosen by \
                             their error by `tolerances`";

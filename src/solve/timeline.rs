@@ -89,6 +89,8 @@ pub(super) struct Timeline {
     pub(super) jumped_at: f64,
     /// True if that is a stop at which f jumps: f may have the value of either side there, or another one.
     pub(super) jumped_by_stop: bool,
+    /// The time at which the last step began. Its stages may be a little later, after a jump.
+    pub(super) begun: f64,
     /// The last step.
     pub(super) last: Step<f64>,
     pub(super) looked_at: Looked,
@@ -99,6 +101,8 @@ pub(super) struct Timeline {
     pub(super) stats: Stats,
     pub(super) facts: Facts,
     pub(super) cancel: Option<Box<Cancel>>,
+    /// The rounding of the times of stages, relative to them: that of the numbers of the problem.
+    pub(super) epsilon: f64,
 }
 
 /// Who cancels a run.
@@ -121,6 +125,7 @@ impl Timeline {
         pace: Pace,
         facts: Facts,
         error_order: Option<usize>,
+        epsilon: f64,
     ) -> Self {
         let pacer = match pace {
             Pace::Equal { grid, max_steps } => {
@@ -149,23 +154,26 @@ impl Timeline {
             ..Stats::default()
         };
         let last = Step { n: 0, t: t0, h: 0.0 };
-        let (looked_at, turns) = (Looked::Nothing, None);
-        Timeline {
+        let mut times = Timeline {
+            looked_at: Looked::Nothing,
+            turns: None,
             t: t0,
             t1,
             goal: t1,
             before: 0,
             jumped_at: t0,
             jumped_by_stop: false,
+            begun: t0,
             last,
-            looked_at,
             pacer,
-            turns,
             cadence,
             stats,
             facts,
             cancel: None,
-        }
+            epsilon,
+        };
+        times.expect_events(false, false);
+        times
     }
 
     /// Lets exact steps be short enough to show events, and tells long steps to the search for their zeros.
@@ -324,7 +332,7 @@ impl Timeline {
         step: Step<f64>,
         end: f64,
     ) -> Result<(), RunError> {
-        self.last = step;
+        (self.begun, self.last) = (self.t, step);
         self.looked_at = Looked::Fresh;
         self.t = end;
         self.stats.accepted += 1;
@@ -340,7 +348,7 @@ impl Timeline {
 
     /// Checks that f, just before the end of the last step, is in 𝔤.
     fn check_field(&mut self, points: &mut dyn AnyPoints) -> Result<(), RunError> {
-        let t = self.t - MARGIN * unit(self.last.t, self.t);
+        let t = self.t - MARGIN * unit([self.last.t, self.t], self.epsilon);
         let checked = points.check_field(t, self.stats.largest_step, &mut self.stats);
         checked.map_err(|source| RunError::LeftManifold { t: self.t, source })
     }
@@ -416,7 +424,7 @@ impl Timeline {
         points: &mut dyn AnyPoints,
         t: f64,
     ) -> Result<Place, RunError> {
-        let start = self.last.t;
+        let start = self.begun;
         let inside =
             self.looked_at != Looked::Nothing && start.min(self.t) <= t && t <= start.max(self.t);
         match inside || t == self.t {
@@ -438,7 +446,7 @@ impl Timeline {
     /// The place of t before the end of the last step, with dense output.
     pub(super) fn within(&mut self, points: &mut dyn AnyPoints, t: f64) -> Result<Place, RunError> {
         let Step { t: start, h, .. } = self.last;
-        if t == start {
+        if t == start || t == self.begun {
             return Ok(Place::Start);
         }
         self.prepare(points).map_err(|source| self.no_point(source))?;
@@ -519,6 +527,7 @@ impl Timeline {
 
     /// Records that the workspace no longer holds the last step.
     pub(super) fn forget_workspace(&mut self) {
+        self.begun = self.last.t;
         self.looked_at = match self.looked_at {
             Looked::Nothing => Looked::Nothing,
             Looked::Prepared | Looked::Restored => Looked::Restored,

@@ -9,13 +9,13 @@ use lieflow::groups::{
 use lieflow::maps::{CoordinateMap, Exp};
 use lieflow::methods::commutator_free::{CF4, CF43};
 use lieflow::methods::low_storage::LS32;
-use lieflow::methods::tableau::{DOP853, DOPRI5, HEUN, RK4};
+use lieflow::methods::tableau::{BS3, DOP853, DOPRI5, HEUN, RK4};
 use lieflow::methods::{CommutatorFree, Doubling, GAUSS4, LowStorage, Rk, Rkmk, RkmkGauss};
-use lieflow::problems::Problem;
+use lieflow::problems::{Flow, Problem};
 use lieflow::samples::{Interpolation, Samples};
 use lieflow::solve::Stops;
 use lieflow::tolerance::Rule;
-use lieflow::{Solve, StepControl};
+use lieflow::{Event, Solve, StepControl};
 use nalgebra::Vector3;
 
 type V = Vector3<f64>;
@@ -352,4 +352,82 @@ fn rows_and_traces_on_unitary_groups() {
     let drift = trace(&run.expect("a run").y) - trace(&start);
     // It was 4e-12 by the rounding of each step, in a straight line.
     assert!(drift.abs() < 1e-13, "{drift}");
+}
+
+/// A wheel whose rate jumps at two stops: every kind of run has the steps of `run`, and its first time is t₀.
+#[test]
+fn every_kind_of_run_ends_steps_at_stops() {
+    let wheel = spin(|t| if (1.0..2.0).contains(&t) { 5.0 } else { 0.5 });
+    let method = Rkmk::new(DOPRI5, Exp);
+    for [t0, t1] in [[0.0, 3.0], [1.0, 3.0], [3.0, 0.0], [2.0, -1.0]] {
+        for by_error in [true, false] {
+            let solve = || {
+                let solve = Solve::new(&wheel, &method, [t0, t1]).stops([1.0, 2.0]);
+                if by_error { solve.tolerances(1e-6, 1e-6) } else { solve.dt(0.3) }
+            };
+            let case = format!("{t0} to {t1}, by error: {by_error}");
+            let run = solve().run(V::x()).expect("a run");
+            let turned = |t: f64| 0.5 * t + 4.5 * (t.clamp(1.0, 2.0) - 1.0);
+            assert!((angle(&run.y) - turned(t1) + turned(t0)).sin().abs() < 1e-12, "{case}");
+            let mut kept = solve().run_continuous(V::x()).expect("a run");
+            assert_eq!(kept.solution.y, run.y, "{case}");
+            assert_eq!(kept.solution.stats.accepted, run.stats.accepted, "{case}");
+            let (with, curve) = solve().run_interpolant(V::x()).expect("a run");
+            assert_eq!((with.y, with.stats.accepted), (run.y, run.stats.accepted), "{case}");
+            assert_eq!([kept.t_span(), curve.t_span()], [[t0, t1]; 2], "{case}");
+            let mut reader = curve.reader().expect("a reader");
+            for t in [t0, 1.0, 2.0, t1] {
+                let off = |y: &V| (angle(y) - turned(t) + turned(t0)).sin().abs();
+                assert!(off(kept.at(t).expect("a point")) < 1e-12, "{case}, {t}");
+                assert!(off(reader.at(t).expect("a point")) < 1e-12, "{case}, {t}");
+            }
+            let mut single = solve().integrator(V::x()).expect("a start");
+            while !single.is_done() {
+                let (before, y) = (single.t(), *single.y());
+                single.step().expect("a step");
+                let mut at = V::zeros();
+                single.interpolate(before, &mut at).expect("the start of the step");
+                assert!((at - y).norm() < 1e-12, "{case}, {before}");
+            }
+            assert_eq!(*single.y(), run.y, "{case}");
+            // A zero at the start is one of the time t₀.
+            let event = Event::new("start", |t, _: &V| t - t0);
+            let run = solve().event(event).run(V::x()).expect("a run");
+            assert_eq!(run.events.first().map(|zero| zero.t), Some(t0), "{case}");
+        }
+    }
+}
+
+/// The times of the stages are numbers of the problem: no stage in f32 is at a stop, nor after it.
+#[test]
+fn stops_hold_in_single_precision() {
+    for at_stop in [0.5, 5.0, 100.0] {
+        for t0 in [0.0, 0.5] {
+            let rate = |t: f32| match t {
+                t if t < 1.0 => 0.5,
+                t if t > 1.0 => 5.0,
+                _ => at_stop,
+            };
+            let f = |t: f32, v: &mut Vector3<f32>| *v = Vector3::new(0.0, 0.0, rate(t));
+            let flow = Flow::of_time(So3::<f32>::new(), Linear, f);
+            let exact = 0.5 * (1.0 - t0) + 5.0;
+            macro_rules! ends {
+                ($($method:expr),*) => {$({
+                    let method = $method;
+                    for dt in [0.5, 0.25, 0.1] {
+                        let run = Solve::new(&flow, &method, [t0, 2.0]).stops([1.0]).dt(dt);
+                        let y = run.run(Vector3::x()).expect("a run").y;
+                        let off = (f64::from(y[1].atan2(y[0])) - exact).sin().abs();
+                        assert!(off < 1e-5, "{}, {at_stop}, {dt}: {off}", stringify!($method));
+                    }
+                })*};
+            }
+            ends![
+                Rkmk::new(RK4, Exp),
+                Rkmk::new(DOPRI5, Exp),
+                Rkmk::new(HEUN, Exp),
+                Rkmk::new(BS3, Exp)
+            ];
+        }
+    }
 }

@@ -235,6 +235,15 @@ fn bytes_that_are_not_of_this_run_are_refused() {
         let run = Solve::new(&body, &method, [0.0, end]).tolerances(1e-8, 1e-8);
         assert!(run.resume(last.into_inner()).run(START).is_err(), "to {end}");
     }
+    // From another start the rows would have other times.
+    for start in [-1.0, 0.5] {
+        let last = RefCell::new(Vec::new());
+        let keep = |bytes: &[u8]| *last.borrow_mut() = bytes.to_vec();
+        let whole = Solve::new(&body, &method, [0.0, 10.0]).tolerances(1e-8, 1e-8).interval(1.0);
+        whole.checkpoints(Duration::ZERO, keep).run(START).unwrap();
+        let run = Solve::new(&body, &method, [start, 10.0]).tolerances(1e-8, 1e-8).interval(1.0);
+        assert!(run.resume(last.into_inner()).run(START).is_err(), "from {start}");
+    }
     let mut others = [
         solve(1e-7).integrator(START).unwrap().save(),
         Solve::new(&body, &method, [0.0, 10.0]).dt(0.1).integrator(START).unwrap().save(),

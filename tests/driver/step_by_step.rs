@@ -10,7 +10,7 @@ use lieflow::faer::Mat;
 use lieflow::groups::{AlgebraMatrix, LieAlgebra, MatrixGroup, Power, So3, Translations};
 use lieflow::maps::Exp;
 use lieflow::methods::tableau::{BS3, DOP853, DOPRI5, HEUN, RK4};
-use lieflow::methods::{AnyMethod, Rk, Rkmk};
+use lieflow::methods::{AnyMethod, Doubling, GAUSS4, Rk, Rkmk, RkmkGauss};
 use lieflow::nalgebra::{Matrix3, Vector3};
 use lieflow::so3::exp;
 use lieflow::solve::Next;
@@ -381,4 +381,41 @@ fn a_run_by_hand_goes_on_from_bytes() {
     second.advance_to(7.0).expect("steps");
     assert_eq!(second.y(), first.y());
     assert!(solve().resume(vec![1, 2, 3]).integrator(Matrix3::identity()).is_err());
+}
+
+/// Steps by error of an integrator turn the state by as little as those of a run: the points within them are right.
+#[test]
+fn steps_by_error_turn_little() {
+    let rate = Vector3::new(0.6, 0.0, 0.8);
+    let problem = boxed_flow(
+        So3::new(),
+        LeftTranslation,
+        move |_, _: &Matrix3<f64>, v: &mut Vector3<f64>| *v = rate,
+    );
+    macro_rules! little {
+        ($($method:expr),*) => {$({
+            let method = $method;
+            let solve = || Solve::new(&problem, &method, [0.0, 1000.0]).tolerances(1e-7, 0.0);
+            let run = solve().run(Matrix3::identity()).expect("a run");
+            let mut single = solve().integrator(Matrix3::identity()).expect("a start");
+            let mut at = Matrix3::zeros();
+            while !single.is_done() {
+                let from = single.t();
+                let end = single.step().expect("a step");
+                for k in 1..20 {
+                    let t = from + (end - from) * f64::from(k) / 20.0;
+                    single.interpolate(t, &mut at).expect("a point");
+                    let off = (at - exp(&(rate * t)).expect("a turn")).norm();
+                    assert!(off < 1e-9, "{} at {t}: {off}", stringify!($method));
+                }
+            }
+            assert_eq!(*single.y(), run.y, "{}", stringify!($method));
+            assert_eq!(single.stats().largest_step, run.stats.largest_step);
+        })*};
+    }
+    little![
+        Doubling(Rkmk::new(RK4, Exp)),
+        Doubling(RkmkGauss::new(GAUSS4, Exp)),
+        Rkmk::new(DOPRI5, Exp)
+    ];
 }

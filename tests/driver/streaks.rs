@@ -14,6 +14,7 @@ use lieflow::methods::{CommutatorFree, Embedded, Rk, Rkmk, Taylor};
 use lieflow::nalgebra::Vector3;
 use lieflow::problems::{RigidBody, RigidBodyAttitude};
 use lieflow::solve::Status;
+use lieflow::tolerance::Rule;
 use lieflow::{Event, Problem, Solution, Solve};
 
 use crate::support::boxed::boxed_flow;
@@ -162,4 +163,41 @@ fn no_step_is_taken_after_the_one_that_is_cancelled() {
     let solve = Solve::new(&body, &Rk(DOPRI5), [0.0, 1e6]).dt(0.1).every(1);
     let run = solve.cancel(&flag).progress(progress).run(START).expect("a run");
     assert_eq!((run.status, run.t), (Status::Cancelled, told.get()));
+}
+
+/// By the length of steps, where they become ever shorter: of the short ones some grow, wherever streaks end.
+#[test]
+fn short_steps_by_length_do_not_depend_on_the_output() {
+    let grows = |t: f64, y: &V, v: &mut V| {
+        let rate = (1.0 - t).recip();
+        *v = V::new(0.3 * rate * y.z, 0.2 * rate * y.x, rate);
+    };
+    let problem = boxed_flow(So3::new(), Linear, grows);
+    let end = 1.0 - 1e-8;
+    // The largest size is that of a step, and has the rounding of its time.
+    let taken = |run: &Solution<V>| (run.y, run.stats.accepted, run.stats.rejected);
+    macro_rules! same {
+        ($($method:expr),*) => {$({
+            let method = $method;
+            let solve = || {
+                let solve = Solve::new(&problem, &method, [0.0, end]).tolerances(1e-10, 0.0);
+                solve.rule(Rule::PerLength)
+            };
+            let free = solve().run(V::x()).expect("a run");
+            assert!(free.stats.smallest_step < 1e-6 * free.stats.largest_step, "{:?}", free.stats);
+            let every = solve().every(1).run(V::x()).expect("a run");
+            assert_eq!(taken(&every), taken(&free), "{}, every step", stringify!($method));
+            let times = solve().count(401).run(V::x()).expect("a run");
+            assert_eq!(taken(&times), taken(&free), "{}, times", stringify!($method));
+            let saves = std::cell::RefCell::new(Vec::new());
+            let keep = |bytes: &[u8]| saves.borrow_mut().push(bytes.to_vec());
+            let saved = solve().checkpoints(std::time::Duration::ZERO, keep).run(V::x());
+            assert_eq!(taken(&saved.expect("a run")), taken(&free), "{}, saved", stringify!($method));
+            for bytes in saves.into_inner().into_iter().step_by(97) {
+                let run = solve().resume(bytes).run(V::x()).expect("a run");
+                assert_eq!(taken(&run), taken(&free), "{}, resumed", stringify!($method));
+            }
+        })*};
+    }
+    same![Rkmk::new(DOPRI5, Exp), Rk(DOPRI5), CommutatorFree(CF43)];
 }

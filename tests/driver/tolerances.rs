@@ -282,6 +282,18 @@ fn by_the_step_and_by_the_length() {
     assert!(errors[1] < 1e-3 * errors[0], "{errors:?}");
 }
 
+/// The rule that was set stays where the tolerances are set after it.
+#[test]
+fn tolerances_keep_the_rule() {
+    let body = RigidBody::<f64>::new([1.0, 2.0, 3.0]).expect("a body");
+    let (method, start) = (Rkmk::new(DOPRI5, Exp), V::new(0.2, 0.0, 3.0));
+    let steps = |run: Solve<'_, RigidBody, _>| run.run(start).expect("a run").stats.accepted;
+    let solve = || Solve::new(&body, &method, [0.0, 50.0]);
+    let before = steps(solve().rule(Rule::PerLength).tolerances(1e-6, 0.0));
+    assert_eq!(before, steps(solve().tolerances(1e-6, 0.0).rule(Rule::PerLength)));
+    assert_ne!(before, steps(solve().tolerances(1e-6, 0.0)));
+}
+
 /// rtol alone, from parts that are 0 at the start: the size of the end of the step counts there.
 #[test]
 fn rtol_alone_from_zero() {
