@@ -27,6 +27,8 @@ struct Before {
     t: f64,
     value: f64,
     zeros: u64,
+    /// Is a zero missed before it?
+    is_missed: bool,
 }
 
 /// The function of an event at the rows of a run.
@@ -110,10 +112,21 @@ impl Between {
             return;
         }
         let counts = |before: f64| self.direction.has_change(before, value);
-        if self.before.is_some_and(|before| counts(before.value) && before.zeros == zeros) {
-            self.missed += 1;
+        let is_missed =
+            self.before.is_some_and(|before| counts(before.value) && before.zeros == zeros);
+        self.missed += u64::from(is_missed);
+        self.before = Some(Before { t, value, zeros, is_missed });
+    }
+
+    /// The last of `zeros` zeros, at t. A row at the same time comes before it. Where the function jumps there, the row has its
+    /// value after the jump.
+    pub(super) fn see_zero(&mut self, t: f64, zeros: u64) {
+        if let Some(before) =
+            self.before.as_mut().filter(|before| before.is_missed && before.t == t)
+        {
+            (before.zeros, before.is_missed) = (zeros, false);
+            self.missed -= 1;
         }
-        self.before = Some(Before { t, value, zeros });
     }
 
     /// The end of a step.

@@ -326,6 +326,7 @@ impl<'a> Recorder<'a> {
             Kind::Event(event) => {
                 if let (Some(seen), Some(file)) = (self.seen.get_mut(event), &mut self.events) {
                     seen.see(t, MARKS);
+                    self.between[event].see_zero(t, seen.count);
                     file.row(Some(&seen.name), t, &self.line)?;
                 }
             }

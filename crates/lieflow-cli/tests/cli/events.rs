@@ -220,3 +220,29 @@ fn rounding_of_a_function_is_that_of_its_own_numbers() {
     let none = told("r1^2 + r2^2 - 42164e3^2");
     assert!(none.contains("its function is zero up to rounding"), "{none}");
 }
+
+/// A row at the time of a jump has the value after it, and comes before the zero that is told there. No zero is missed.
+#[test]
+fn a_jump_at_a_row_is_no_missed_zero() {
+    let folder = Folder::new();
+    folder.write("u.csv", "t,s\n0,1\n1,-1\n2,0.5\n3,0.5\n");
+    let held = "samples = \"u.csv\"\ninterpolation = \"previous\"\n";
+    for (field, samples, when, stops, zeros) in [
+        ("sign(t-1)", "", "sign(t-1)+0.5", "stops = [1]", "once, at t = 1"),
+        ("s", held, "s", "", "2 times"),
+    ] {
+        for output in
+            ["interval = 0.5", "times = [1.0, 2.0]", "every = 1", "count = 7", "count = 4"]
+        {
+            let scene = format!(
+                "[problem]\nkind = \"composed\"\n{samples}parts = [{{ name = \"x\", space = \"numbers\", start = [1.0], \
+                 field = [\"{field}\"] }}]\n[time]\nt_span = [0, 3]\n{stops}\n[output]\n{output}\n[[events]]\n\
+                 name = \"z\"\nwhen = \"{when}\"\n"
+            );
+            folder.write("scene.toml", &scene);
+            let told = folder.lieflow(&["run", "scene.toml", "--no-page", "--out", "out"]).ok();
+            assert!(told.contains(&format!("event z: {zeros}")), "{output}: {told}");
+            assert!(!told.contains("WARNING"), "{output}: {told}");
+        }
+    }
+}
