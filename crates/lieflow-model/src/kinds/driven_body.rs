@@ -34,7 +34,7 @@ pub(super) const KIND: Kind = Kind {
     ..Kind::of::<Keys, Driven>(|section| read_with(section, read))
 };
 
-keys! { Keys [sample_keys formula_keys body_keys] {
+keys! { Keys [sample_keys formula_keys attitude_keys body_keys] {
     weight: Option<Reals<3>> [TORQUE] =
         "gravity: weight times the vector from the fixed point to the centre of mass, in the body; optional",
     thruster: Option<Reals<3>> [TORQUE] = "a constant torque in the body; optional",
@@ -169,7 +169,7 @@ struct Driven {
 type Q = Quantity<Driven>;
 
 fn read(mut keys: Keys) -> Result<Forms, ReadError> {
-    let spec = keys.body_keys().start(Matrix3::identity());
+    let spec = keys.body_keys().start(&keys.attitude_keys(), Matrix3::identity());
     let names = keys.formula_keys().names("torque", VARIABLES, keys.sample_keys());
     let formulas = |key: &str, texts: Key<Option<Texts>>| -> Result<Option<Formulas>, ReadError> {
         let Some(texts) = texts? else { return Ok(None) };

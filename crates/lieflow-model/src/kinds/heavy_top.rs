@@ -28,7 +28,7 @@ pub(super) const KIND: Kind = Kind {
     ..Kind::of::<Keys, Top<WithAttitude>>(|section| read_with(section, read))
 };
 
-keys! { Keys [body_keys] {
+keys! { Keys [attitude_keys body_keys] {
     weight: Reals<3> [TORQUE] = "weight times the vector from the fixed point to the centre of mass, in the body",
     vertical: Option<Reals<3>> =
         "initial direction upward in the body, of length 1, instead of attitude: the attitude is then the least turn \
@@ -50,7 +50,7 @@ const AGREED: f64 = 1e-6;
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 fn read(mut keys: Keys) -> Result<Forms, ReadError> {
-    let (body, mut notes) = (keys.body_keys(), Vec::new());
+    let (body, attitude, mut notes) = (keys.body_keys(), keys.attitude_keys(), Vec::new());
     let vertical = keys.vertical.and_then(|vertical| {
         let Some(vertical) = vertical else { return Ok(None) };
         check_unit("vertical", &vertical.0, &mut notes)?;
@@ -58,15 +58,16 @@ fn read(mut keys: Keys) -> Result<Forms, ReadError> {
         Ok(Some(vertical / vertical.norm()))
     });
     let stands = match &vertical {
-        Ok(None) if !body.has_attitude() => {
+        Ok(None) if !attitude.has_attitude() => {
             let message = "expected `vertical`, `attitude` or `quaternion`, or Euler angles, found none of them";
             Err(Refusal::section(message))
         }
         _ => Ok(()),
     };
-    let has_attitude = body.has_attitude();
+    let has_attitude = attitude.has_attitude();
     let upright = vertical.as_ref().ok().and_then(|vertical| vertical.map(upright));
-    let (body, weight) = (body.start(upright.unwrap_or_else(Matrix3::identity)), keys.weight);
+    let (body, weight) =
+        (body.start(&attitude, upright.unwrap_or_else(Matrix3::identity)), keys.weight);
     let (stated, (), mut body, weight) = all!(vertical, stands, body, weight)?;
     let of_attitude = body.attitude.row(2).transpose();
     let stated = stated.map_or(of_attitude, |vertical| body.along_axes(vertical));

@@ -14,10 +14,9 @@ use lieflow::scalar::{Counted, Trig};
 use lieflow_runs::spaces;
 use nalgebra::{Matrix3, Vector3};
 
-use super::body::{Orientation, Oriented, check_rotation, quaternion, with_angles};
+use super::body::{Orientation, Oriented, attitude_keys, quaternion, with_angles};
 use super::prelude::*;
 use crate::formula::{Formula, Names, Texts, without_value};
-use crate::reader::values::Rows;
 
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {
@@ -27,7 +26,7 @@ pub(super) const KIND: Kind = Kind {
     ..Kind::of::<Keys, Motion>(|section| read_with(section, read))
 };
 
-keys! { Keys [sample_keys formula_keys] {
+keys! { Keys [sample_keys formula_keys attitude_keys] {
     omega: Texts [RATE] =
         "the angular velocity: three formulas, or one whose value is a vector, in t, the attitude g11, ..., g33 and the \
          position x1, x2, x3",
@@ -36,7 +35,6 @@ keys! { Keys [sample_keys formula_keys] {
          the point of the body at the origin of space",
     frame: Option<String> =
         "the axes of omega and velocity: \"body\" or \"space\"; optional, \"body\"",
-    attitude: Option<Rows<3>> = "initial rotation from body to space; optional, the identity",
     position: Option<Reals<3>> [LENGTH] = "initial position; optional, the origin",
 } }
 
@@ -73,7 +71,9 @@ type Q = Quantity<Motion>;
 fn read(mut keys: Keys) -> Result<Forms, ReadError> {
     let names = keys.formula_keys().names("omega", VARIABLES, keys.sample_keys());
     let formulas = |key: &str, texts: Key<Texts>| texts?.read_by(key, Some(3), seen(&names));
-    let Keys { omega, velocity, frame, attitude, position, .. } = keys;
+    let mut notes = Vec::new();
+    let attitude = keys.attitude_keys().orientation(Matrix3::identity(), &mut notes);
+    let Keys { omega, velocity, frame, position, .. } = keys;
     let (omega, velocity) = (formulas("omega", omega), formulas("velocity", velocity));
     let names = names.and_then(Names::checked);
     let in_body = frame.and_then(|frame| match frame.as_deref() {
@@ -81,15 +81,7 @@ fn read(mut keys: Keys) -> Result<Forms, ReadError> {
         Some("space") => Ok(false),
         Some(other) => Err(Refusal::unknown("frame", other, &["body", "space"]).into()),
     });
-    let mut notes = Vec::new();
-    let attitude = attitude.and_then(|rows| match rows {
-        None => Ok(Matrix3::identity()),
-        Some(Rows(rows)) => {
-            let g = Matrix3::from_fn(|i, j| rows[i][j]);
-            Ok::<_, ReadError>(check_rotation("attitude", g, &mut notes)?)
-        }
-    });
-    let (omega, velocity, _, in_body, attitude, position) =
+    let (omega, velocity, _, in_body, (attitude, _), position) =
         all!(omega, velocity, names, in_body, attitude, position)?;
     let position = position.map_or_else(Vector3::zeros, |x| x.0.into());
     let twist = omega.into_iter().chain(velocity).collect();

@@ -52,6 +52,30 @@ fn both_frames_are_one_motion() {
     assert!(far(&body[..3], &[1.0, -2.0, 0.5]) > 0.5);
 }
 
+/// A vehicle stands as a body does: by a matrix, a quaternion, or angles.
+#[test]
+fn a_start_may_be_a_quaternion_or_angles() {
+    let of = |start: &str| {
+        let problem = format!(
+            "kind = \"rigid-motion\"\n{start}\nomega = [0.1, 0.2, \"t\"]\nvelocity = [1, 0, 0]\nposition = [1, 2, 3]"
+        );
+        last(&scene(&problem, "name = \"rkmk4\"", FINE, ALL))
+    };
+    let matrix = of("attitude = [[0, -1, 0], [1, 0, 0], [0, 0, 1]]");
+    for start in [
+        "quaternion = [0.7071067811865476, 0, 0, 0.7071067811865476]",
+        "euler.zyx = [\"pi/2\", 0, 0]",
+        "fixed.xyz = [0, 0, \"pi/2\"]",
+    ] {
+        let found = of(start);
+        assert!(far(&found, &matrix) < 1e-14, "{start}: {found:?} {matrix:?}");
+    }
+    let text = "[problem]\nkind = \"rigid-motion\"\nomega = [0, 0, 1]\nvelocity = [1, 0, 0]\n\
+                quaternion = [1, 0, 0, 0]\neuler.zyx = [1, 0, 0]\n[time]\nt_span = [0, 1]\n";
+    let message = Scene::parse("scene", text).unwrap_err().to_string();
+    assert!(message.contains("both `quaternion` and `euler`"), "{message}");
+}
+
 #[test]
 fn motions_that_are_none_are_refused() {
     for (line, instead, words) in [

@@ -1,9 +1,9 @@
-//! The keys of a body and its start.
+//! The keys of a body and its start, and those of an attitude.
 
 use crate::problem::group;
 
 group! {
-    /// The keys of a body and its start, of every kind of bodies. The library's moments are about principal axes.
+    /// The keys of a body and its velocity, of every kind of bodies. The library's moments are about principal axes.
     BodyKeys in (crate::kinds::body) = body_keys $,
     before {
         inertia: Option<crate::reader::values::Diagonal> [INERTIA] =
@@ -19,6 +19,14 @@ group! {
             "initial angular velocity in space, instead of omega_body",
         momentum_space: Option<crate::reader::values::Reals<3>> [ANGULAR_MOMENTUM] =
             "initial angular momentum in space, instead of omega_body",
+    }
+    after {}
+}
+
+group! {
+    /// The keys of an initial attitude: a matrix, a quaternion, or angles.
+    AttitudeKeys in (crate::kinds::body) = attitude_keys $,
+    before {
         attitude: Option<crate::reader::values::Rows<3>> =
             "initial rotation from body to space, three rows; left out, it is the identity, but a heavy-top needs it or vertical",
         quaternion: Option<crate::reader::values::Reals<4>> =

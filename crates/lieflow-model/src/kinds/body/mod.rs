@@ -1,4 +1,4 @@
-//! What all kinds of bodies share: their keys ([`BodyKeys`]), the start that these state, and their quantities.
+//! What all kinds of bodies share: their keys ([`BodyKeys`], [`AttitudeKeys`]), the start that these state, and their quantities.
 
 mod euler;
 mod keys;
@@ -16,8 +16,8 @@ use lieflow::problems::{Exact, RigidBody};
 use lieflow::so3::{quaternion_from_matrix, quaternion_from_wxyz};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
-pub(crate) use self::keys::BodyKeys;
-pub(super) use self::keys::body_keys;
+pub(crate) use self::keys::{AttitudeKeys, BodyKeys};
+pub(super) use self::keys::{attitude_keys, body_keys};
 pub(super) use self::quantities::*;
 pub(crate) use self::shape::Shape;
 use super::entries::check_symmetric;
@@ -174,38 +174,17 @@ pub(super) fn rotation(q: &UnitQuaternion<f64>) -> Matrix3<f64> {
 /// Principal moments of inertia, and the principal axes where the scene's are others.
 type Principal = ([f64; 3], Option<Matrix3<f64>>);
 
-impl BodyKeys {
+impl AttitudeKeys {
     /// Does the scene say how the body stands?
     pub(super) fn has_attitude(&self) -> bool {
-        let Self { attitude, quaternion, euler, fixed, .. } = self;
+        let Self { attitude, quaternion, euler, fixed } = self;
         let has_angles =
             [euler, fixed].iter().any(|angles| !matches!(angles, Ok(angles) if angles.is_empty()));
         has_angles || !matches!((attitude, quaternion), (Ok(None), Ok(None)))
     }
 
-    /// The body with its start; the attitude where the scene does not say it.
-    ///
-    /// # Errors
-    /// Refusals of the keys that cannot be used.
-    pub(super) fn start(self, otherwise: Matrix3<f64>) -> Result<RigidBodySpec, ReadError> {
-        let mut notes = Vec::new();
-        let (principal, rate) = (self.principal(), self.rate());
-        let orientation = self.orientation(otherwise, &mut notes);
-        let ((inertia, axes), rate, (mut attitude, mut quaternion)) =
-            all!(principal, rate, orientation)?;
-        let momentum = momentum(rate, inertia, axes.as_ref(), &attitude)?;
-        if let Some(axes) = axes {
-            attitude *= axes;
-            if let Some(q) = &mut quaternion {
-                *q *= quaternion_from_matrix(&axes)?;
-            }
-        }
-        let body = RigidBodySpec::new(inertia, momentum.into(), attitude)?;
-        Ok(RigidBodySpec { quaternion, axes, notes, ..body })
-    }
-
     /// The rotation to space as the scene has it, and its quaternion where the scene gives one.
-    fn orientation(
+    pub(super) fn orientation(
         &self,
         otherwise: Matrix3<f64>,
         notes: &mut Vec<String>,
@@ -236,6 +215,33 @@ impl BodyKeys {
             attitude = euler::stated(key, seen(table)?)?.map_or(attitude, |q| rotation(&q));
         }
         Ok((attitude, None))
+    }
+}
+
+impl BodyKeys {
+    /// The body with its start; the attitude where the scene does not say it.
+    ///
+    /// # Errors
+    /// Refusals of the keys that cannot be used.
+    pub(super) fn start(
+        self,
+        attitude: &AttitudeKeys,
+        otherwise: Matrix3<f64>,
+    ) -> Result<RigidBodySpec, ReadError> {
+        let mut notes = Vec::new();
+        let (principal, rate) = (self.principal(), self.rate());
+        let orientation = attitude.orientation(otherwise, &mut notes);
+        let ((inertia, axes), rate, (mut attitude, mut quaternion)) =
+            all!(principal, rate, orientation)?;
+        let momentum = momentum(rate, inertia, axes.as_ref(), &attitude)?;
+        if let Some(axes) = axes {
+            attitude *= axes;
+            if let Some(q) = &mut quaternion {
+                *q *= quaternion_from_matrix(&axes)?;
+            }
+        }
+        let body = RigidBodySpec::new(inertia, momentum.into(), attitude)?;
+        Ok(RigidBodySpec { quaternion, axes, notes, ..body })
     }
 
     /// The initial velocity or momentum.

@@ -7,7 +7,7 @@ use nalgebra::Matrix3;
 use self::model::{
     Attitude, AttitudeMatrix, Body, MomentumMatrix, MomentumOnly, Quaternion, State,
 };
-use super::body::body_keys;
+use super::body::{attitude_keys, body_keys};
 use super::prelude::*;
 
 /// The entry in the list of kinds.
@@ -18,10 +18,10 @@ pub(super) const KIND: Kind = Kind {
     ..Kind::of::<Keys, Body<Attitude>>(|section| read_with(section, read))
 };
 
-keys! { Keys [body_keys] {} }
+keys! { Keys [attitude_keys body_keys] {} }
 
 fn read(mut keys: Keys) -> Result<Forms, ReadError> {
-    let body = keys.body_keys().start(Matrix3::identity())?;
+    let body = keys.body_keys().start(&keys.attitude_keys(), Matrix3::identity())?;
     let momentum = Forms::of(Body::<MomentumOnly>::new(&body)?);
     let forms = match body.quaternion {
         Some(_) => momentum
