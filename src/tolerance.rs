@@ -199,6 +199,8 @@ pub struct Tolerance {
     /// One for all parts, or one for each.
     parts: Vec<PartTolerance>,
     rule: Rule,
+    /// Do the steps of the run have a least size?
+    has_least_step: bool,
 }
 
 impl Tolerance {
@@ -210,6 +212,16 @@ impl Tolerance {
             Weight::Jump => JUMP,
         };
         self.parts.iter_mut().for_each(|part| part.reach = reach);
+    }
+
+    /// The same in a run whose steps have a least size, or have none.
+    pub(crate) fn of_run(&self, has_least_step: bool) -> Self {
+        Tolerance { has_least_step, ..self.clone() }
+    }
+
+    /// Do the steps of the run have a least size, which they take whatever their error is?
+    pub(crate) fn has_least_step(&self) -> bool {
+        self.has_least_step
     }
 
     /// One rtol and one atol for all parts.
@@ -228,7 +240,7 @@ impl Tolerance {
         let parts = parts.into();
         match parts.len() {
             0 => Err(Error::out_of_range("tolerances", 0.0, "at least one")),
-            _ => Ok(Tolerance { parts, rule: Rule::default() }),
+            _ => Ok(Tolerance { parts, rule: Rule::default(), has_least_step: false }),
         }
     }
 
@@ -304,7 +316,7 @@ impl Tolerance {
 
 impl From<PartTolerance> for Tolerance {
     fn from(part: PartTolerance) -> Self {
-        Tolerance { parts: vec![part], rule: Rule::default() }
+        Tolerance { parts: vec![part], rule: Rule::default(), has_least_step: false }
     }
 }
 

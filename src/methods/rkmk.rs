@@ -191,6 +191,8 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> Method<P> for Rkm
 /// dΨ⁻¹ multiplies the rounding of the stages, again and again in the further stages of dense output, and the error of a step
 /// does not see these.
 pub(crate) const FARTHEST: f64 = 8.0;
+/// The largest error of a step that turns too far.
+const MOST: f64 = 1e30;
 
 impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> Embedded<P> for Rkmk<Psi, S> {
     fn step_with_error(
@@ -222,7 +224,7 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> Embedded<P> for R
             return Err(stages.blame(problem, error));
         }
         // A step that turns as far as it may has an error of 1, which grows in the order of the estimate. One that turns farther
-        // is accepted: it may be the first one, or the least.
+        // is accepted only where steps have a least size: it may be the least.
         let of_turn = |turn: ScalarOf<P>| {
             let part = turn / ScalarOf::<P>::lit(FARTHEST);
             (0..=estimate.order).fold(ScalarOf::<P>::lit(1.0), |power, _| power * part)
@@ -233,6 +235,7 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> Embedded<P> for R
         alg.combine(step.h, &self.tableau.b, k, u);
         let relative = problem.action().error_ratio(alg, u, from, &mut Scales::relative());
         let error_of_turn = of_turn(smaller(length, relative));
-        Ok(larger(error, smaller(ScalarOf::<P>::lit(1.0), error_of_turn)))
+        let most = if tolerance.has_least_step() { 1.0 } else { MOST };
+        Ok(larger(error, smaller(ScalarOf::<P>::lit(most), error_of_turn)))
     }
 }

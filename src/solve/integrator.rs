@@ -55,7 +55,7 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
     ) -> Result<Self, Error> {
         let adaptive = match &pace {
             Pace::Equal { .. } => None,
-            Pace::ByError(control) => estimator.map(|estimator| (&control.tolerance, estimator)),
+            Pace::ByError(control) => estimator.map(|estimator| (control, estimator)),
         };
         let field_at = (t0 != t1).then_some(t0);
         let (points, facts, error_order) = Points::new(held, adaptive, y, field_at)?;

@@ -407,7 +407,7 @@ where
             pieces.push(Piece { until, step, curve });
         }
         let finite = |piece: &Piece<P>| piece.until.is_finite() && piece.step.h.is_finite();
-        if !complete || !(t0.is_finite() && t.is_finite()) || !pieces.iter().all(finite) {
+        if !complete || !t0.is_finite() || !t.is_finite() || !pieces.iter().all(finite) {
             return Err(wrong());
         }
         let (problem, method) = (Held::Shared(problem), Held::Shared(method));

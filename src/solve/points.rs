@@ -4,6 +4,7 @@
 //! [`Drive`](super::drive::Drive)). It calls this part through a pointer, a few times for each step. So the compiler
 //! compiles the driver once, and only this file again for each problem and method. A step itself has no such call.
 
+use super::control::StepControl;
 use super::held::Held;
 use super::interpolant::{Listing, Piece, no_polynomial};
 use super::stats::{Cadence, RunError, Stats, power_of_two_above, power_of_two_of_rate};
@@ -268,21 +269,25 @@ impl<'a, P: Problem, M: Method<P>> Points<'a, P, M> {
     /// step and, for an adaptive step size, the order of the error.
     pub(super) fn new(
         (problem, method): (Held<'a, P>, Held<'a, M>),
-        adaptive: Option<(&Tolerance, Estimator<P, M>)>,
+        adaptive: Option<(&StepControl, Estimator<P, M>)>,
         mut y: PointOf<P>,
         field_at: Option<f64>,
     ) -> Result<(Self, Facts, Option<usize>), Error> {
         let held = (problem, method);
         let (problem, method) = (&*held.0, &*held.1);
-        let restore =
-            checked_start(problem, &mut y, adaptive.as_ref().map(|(tolerance, _)| *tolerance))?;
+        let restore = checked_start(
+            problem,
+            &mut y,
+            adaptive.as_ref().map(|(control, _)| control.tolerance()),
+        )?;
         let facts = method.facts(problem);
         let mut error_order = None;
         let rates = match adaptive {
             None => None,
-            Some((tolerance, estimator)) => {
+            Some((control, estimator)) => {
                 error_order = Some(facts.order_of_estimate()?);
-                Some(Rates { estimator, tolerance: tolerance.clone(), f: problem.group().zero() })
+                let tolerance = control.tolerance().of_run(control.min_step > 0.0);
+                Some(Rates { estimator, tolerance, f: problem.group().zero() })
             }
         };
         let work = method.work(problem, &y)?;

@@ -13,10 +13,11 @@ use lieflow::methods::tableau::{BS3, DOP853, DOPRI5, HEUN, RK4};
 use lieflow::methods::{CommutatorFree, Doubling, GAUSS4, LowStorage, Rk, Rkmk, RkmkGauss};
 use lieflow::problems::{Flow, Problem};
 use lieflow::samples::{Interpolation, Samples};
+use lieflow::so3;
 use lieflow::solve::Stops;
 use lieflow::tolerance::Rule;
 use lieflow::{Event, Solve, StepControl};
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 type V = Vector3<f64>;
 type Rate = fn(f64) -> f64;
@@ -429,5 +430,41 @@ fn stops_hold_in_single_precision() {
                 Rkmk::new(BS3, Exp)
             ];
         }
+    }
+}
+
+/// Steps by error turn by 8 radians at most, also the first ones behind a stop where the rate grows, and a first step that is given:
+/// the points within them are right.
+#[test]
+fn steps_behind_a_stop_turn_little() {
+    let axis = V::new(0.6, 0.0, 0.8);
+    for rate in [1.0, 5.0] {
+        let rate_at = move |t: f64| if t < 400.0 { 0.02 } else { rate };
+        let field = move |t: f64, _: &Matrix3<f64>, v: &mut V| *v = rate_at(t) * axis;
+        let problem = boxed_flow(So3::new(), LeftTranslation, field);
+        let turned = |t: f64| 0.02 * t.min(400.0) + rate * (t - 400.0).max(0.0);
+        let off =
+            |t: f64, y: &Matrix3<f64>| (y - so3::exp(&(turned(t) * axis)).expect("a turn")).norm();
+        macro_rules! little {
+            ($($method:expr),*) => {$(for rtol in [1e-3, 1e-6, 1e-9] {
+                let method = $method;
+                let solve = |span: [f64; 2]| Solve::new(&problem, &method, span).tolerances(rtol, rtol);
+                let case = format!("{}, rate {rate}, rtol = {rtol}", stringify!($method));
+                let run = solve([0.0, 440.0]).stops([400.0]).count(4401).run(Matrix3::identity());
+                let run = run.expect("a run");
+                assert!(run.stats.largest_step <= 8.0 / 0.02, "{case}: {:?}", run.stats);
+                let rows = run.times.iter().zip(&run.points);
+                let most = rows.map(|(t, y)| off(*t, y)).fold(0.0, f64::max);
+                assert!(most < 1e-3 * rtol.max(1e-7), "{case}: {most:e}");
+                // A first step that is given.
+                let first = solve([500.0, 900.0]).first_step(300.0).count(4001);
+                let run = first.run(so3::exp(&(turned(500.0) * axis)).expect("a turn")).expect("a run");
+                assert!(run.stats.largest_step * rate <= 8.0, "{case}: {:?}", run.stats);
+                let rows = run.times.iter().zip(&run.points);
+                let most = rows.map(|(t, y)| off(*t, y)).fold(0.0, f64::max);
+                assert!(most < 1e-3 * rtol.max(1e-7), "{case}, first step: {most:e}");
+            })*};
+        }
+        little![Rkmk::new(DOPRI5, Exp), Rkmk::new(DOP853, Exp), Rkmk::new(BS3, Exp)];
     }
 }
