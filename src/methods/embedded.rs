@@ -85,6 +85,9 @@ pub(super) fn ratio_of_relative<S: Real, M: Metric<Scalar = S>>(
     }
 }
 
+/// The ratio of a step that is far too long is no larger: where it were infinite, no next size would follow from it.
+pub(super) const LARGEST_RATIO: f64 = 1e30;
+
 /// The largest ratio of an error that may be rounding. Such a step is accepted, and from order 4 to 12 its size is kept. If
 /// the ratio were 0, the next step would have five times the size. Where the tolerance is near the rounding, that step would
 /// be rejected.

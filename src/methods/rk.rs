@@ -5,6 +5,7 @@
 //! Points within a step: [`Dense`](super::tableau::Dense).
 //! Source: Hairer, Nørsett, Wanner I, p. 138.
 
+use super::embedded::LARGEST_RATIO;
 use super::extension::{EXTRA, Extension};
 use super::stages::{Known, copies, sum};
 use super::{Embedded, Facts, MapCounts, Method, Step, StepCost, Tableau, Within};
@@ -14,9 +15,6 @@ use crate::problems::{Ambient, PointOf, ScalarOf};
 use crate::scalar::{Real, smaller};
 use crate::space::{Gap, LinearSpace, Metric};
 use crate::tolerance::{Rule, Tolerance, ratio};
-
-/// The largest error ratio of a step by [`Rule::PerLength`]: its length may be 0.
-const UNMOVED: f64 = 1e30;
 
 /// An explicit Runge–Kutta method on the entries of y.
 #[derive(Clone, Copy, Debug)]
@@ -191,7 +189,7 @@ impl<P: Ambient, const S: usize> Embedded<P> for Rk<S> {
             match tolerance.rule() {
                 // Next to a jump a step may be so short that it does not move the point.
                 Rule::PerLength => smaller(
-                    Real::lit(UNMOVED),
+                    Real::lit(LARGEST_RATIO),
                     ratio(z.size(), tolerance.per_length(to.distance(from))),
                 ),
                 Rule::PerStep => {

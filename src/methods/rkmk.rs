@@ -10,7 +10,7 @@
 //! Points within a step: [`Dense`](super::tableau::Dense) in the chart of the step.
 //! Source: H. Munthe-Kaas, High order Runge–Kutta methods on manifolds, Appl. Numer. Math. 29 (1999).
 
-use super::embedded::ratio_in_algebra;
+use super::embedded::{LARGEST_RATIO, ratio_in_algebra};
 use super::extension::{EXTRA, Extension};
 use super::stages::{Stages, copies};
 use super::{Embedded, Facts, MapCounts, Method, Step, StepCost, Tableau, Within};
@@ -191,8 +191,6 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> Method<P> for Rkm
 /// dΨ⁻¹ multiplies the rounding of the stages, again and again in the further stages of dense output, and the error of a step
 /// does not see these.
 pub(crate) const FARTHEST: f64 = 8.0;
-/// The largest error of a step that turns too far.
-const MOST: f64 = 1e30;
 
 impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> Embedded<P> for Rkmk<Psi, S> {
     fn step_with_error(
@@ -235,7 +233,7 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> Embedded<P> for R
         alg.combine(step.h, &self.tableau.b, k, u);
         let relative = problem.action().error_ratio(alg, u, from, &mut Scales::relative());
         let error_of_turn = of_turn(smaller(length, relative));
-        let most = if tolerance.has_least_step() { 1.0 } else { MOST };
+        let most = if tolerance.has_least_step() { 1.0 } else { LARGEST_RATIO };
         Ok(larger(error, smaller(ScalarOf::<P>::lit(most), error_of_turn)))
     }
 }

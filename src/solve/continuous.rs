@@ -4,10 +4,9 @@ use super::integrator::Integrator;
 use super::output::Kept;
 use super::solution::Solution;
 use super::stats::RunError;
-use super::stops::{begin_of, epsilon_of_times};
 use crate::error::Error;
 use crate::methods::Method;
-use crate::problems::{PointOf, Problem, ScalarOf};
+use crate::problems::{PointOf, Problem};
 
 /// The continuous solution of a run: a point on M for every time of its span.
 ///
@@ -51,11 +50,8 @@ impl<'a, P: Problem, M: Method<P>> Continuous<'a, P, M> {
 
     /// The first and the last time of the solution.
     pub fn t_span(&self) -> [f64; 2] {
-        let first = self.steps.first();
-        let begin = |(until, step, _): &Kept<_>| {
-            begin_of(step.t, [self.run.t(), *until], epsilon_of_times::<ScalarOf<P>>())
-        };
-        [first.map_or(self.solution.t, begin), self.solution.t]
+        let start = self.steps.first().map_or(self.solution.t, |([from, _], ..)| *from);
+        [start, self.solution.t]
     }
 
     /// The point at t.
@@ -73,8 +69,9 @@ impl<'a, P: Problem, M: Method<P>> Continuous<'a, P, M> {
         }
         let forward = end >= start;
         // The first step that ends after t.
-        let index =
-            self.steps.partition_point(|(end, ..)| if forward { *end <= t } else { *end >= t });
+        let index = self
+            .steps
+            .partition_point(|([_, end], ..)| if forward { *end <= t } else { *end >= t });
         let Some((_, step, from)) = self.steps.get(index) else { return Ok(&self.solution.y) };
         if self.current != Some(index) {
             self.run.look_at(*step, from);

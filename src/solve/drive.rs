@@ -172,7 +172,7 @@ impl Drive<'_> {
         }
         match self.keeps {
             Keeps::Nothing => Ok(()),
-            _ => output.keep(self.times.t, self.times.last),
+            _ => output.keep([self.times.begun, self.times.t], self.times.last),
         }
     }
 

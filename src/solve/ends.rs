@@ -46,8 +46,7 @@ impl Timeline {
                 return Step { n, t: t + MARGIN * unit, h };
             }
             let next = if unit > 0.0 { t.next_up() } else { t.next_down() };
-            let is_coarse = self.epsilon > f64::EPSILON;
-            let late = if t == 0.0 || is_coarse { unit } else { next - t };
+            let late = if t == 0.0 { unit } else { (next - t) * (self.epsilon / f64::EPSILON) };
             (t, h) = (t + late, h - late);
         }
         if !jumps && (!is_last || self.facts.stages_within) {

@@ -8,12 +8,13 @@ use super::drive::Patience;
 use super::held::Held;
 use super::points::{AnyPoints, Estimator, Points};
 use super::stats::{RunError, Stats};
-use super::stops::{Stop, epsilon_of_times};
+use super::stops::Stop;
 use super::streak::{Alone, Reach};
 use super::timeline::{Cancel, Looked, Pace, Timeline};
 use crate::error::Error;
 use crate::methods::{Method, Step};
 use crate::problems::{PointOf, Problem, ScalarOf};
+use crate::scalar::Real;
 use crate::space::Metric;
 
 /// A run that is taken step by step.
@@ -59,7 +60,8 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
         };
         let field_at = (t0 != t1).then_some(t0);
         let (points, facts, error_order) = Points::new(held, adaptive, y, field_at)?;
-        let epsilon = epsilon_of_times::<ScalarOf<P>>();
+        // The times of stages have the rounding of the problem's numbers.
+        let epsilon = ScalarOf::<P>::EPSILON.max(f64::EPSILON);
         let times = Timeline::new([t0, t1], pace, facts, error_order, epsilon);
         Ok(Integrator { points, times, stops: Vec::new(), patience: Patience::new() })
     }

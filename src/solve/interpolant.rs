@@ -10,7 +10,6 @@ use std::sync::Arc;
 
 use super::held::Held;
 use super::stats::RunError;
-use super::stops::{begin_of, epsilon_of_times};
 use crate::actions::Action;
 use crate::error::{Error, StepError};
 use crate::groups::LieAlgebra;
@@ -57,9 +56,9 @@ enum Curve<P: Problem> {
     Series(PointOf<P>, Vec<f64>),
 }
 
-/// A step, with the time up to which it is valid.
+/// A step, with the times at which it began and up to which it is valid.
 pub(super) struct Piece<P: Problem> {
-    until: f64,
+    span: [f64; 2],
     step: Step<f64>,
     curve: Curve<P>,
 }
@@ -104,7 +103,7 @@ impl<P: Problem> Piece<P> {
     /// The piece of the last step with this workspace, which is prepared for points within the step.
     pub(super) fn record<M: Method<P>>(
         (problem, method): (&P, &M),
-        (step, until): (Step<f64>, f64),
+        (step, span): (Step<f64>, [f64; 2]),
         from: &PointOf<P>,
         work: &mut M::Work,
         (at, list): (&mut PointOf<P>, Listing<P>),
@@ -133,12 +132,12 @@ impl<P: Problem> Piece<P> {
             }
             Within::Steps => return Err(StepError::NotFinite { what: "the continuous extension" }),
         };
-        Ok(Piece { until, step, curve })
+        Ok(Piece { span, step, curve })
     }
 
     /// Lets the piece end at t.
     pub(super) fn cut(&mut self, t: f64) {
-        self.until = t;
+        self.span[1] = t;
     }
 }
 
@@ -179,8 +178,6 @@ pub struct Interpolant<'a, P: Problem, M: Method<P>> {
     problem: Held<'a, P>,
     method: Held<'a, M>,
     pieces: Vec<Piece<P>>,
-    /// The start of the run.
-    t0: f64,
     /// The end.
     t: f64,
     y: PointOf<P>,
@@ -190,20 +187,14 @@ impl<'a, P: Problem, M: Method<P>> Interpolant<'a, P, M> {
     pub(super) fn new(
         (problem, method): (Held<'a, P>, Held<'a, M>),
         pieces: Vec<Piece<P>>,
-        (t0, (t, y)): (f64, (f64, PointOf<P>)),
+        (t, y): (f64, PointOf<P>),
     ) -> Self {
-        Interpolant { problem, method, pieces, t0, t, y }
+        Interpolant { problem, method, pieces, t, y }
     }
 
     /// The first and the last time.
     pub fn t_span(&self) -> [f64; 2] {
-        let first = self.pieces.first();
-        [first.map_or(self.t, |piece| self.begin(piece)), self.t]
-    }
-
-    /// The time at which this piece begins, if it is the first.
-    fn begin(&self, piece: &Piece<P>) -> f64 {
-        begin_of(piece.step.t, [self.t0, piece.until], epsilon_of_times::<ScalarOf<P>>())
+        [self.pieces.first().map_or(self.t, |piece| piece.span[0]), self.t]
     }
 
     /// The number of steps.
@@ -215,11 +206,11 @@ impl<'a, P: Problem, M: Method<P>> Interpolant<'a, P, M> {
     ///
     /// A run of [`Solve::shared`](super::Solve::shared) borrows neither.
     pub fn into_shared(self) -> Option<Interpolant<'static, P, M>> {
-        let Interpolant { problem, method, pieces, t0, t, y } = self;
+        let Interpolant { problem, method, pieces, t, y } = self;
         match (problem, method) {
             (Held::Shared(problem), Held::Shared(method)) => {
                 let (problem, method) = (Held::Shared(problem), Held::Shared(method));
-                Some(Interpolant { problem, method, pieces, t0, t, y })
+                Some(Interpolant { problem, method, pieces, t, y })
             }
             _ => None,
         }
@@ -264,8 +255,8 @@ impl<P: Problem<Action: Action<P::Group, Point: Numbers>>, M: Method<P>> Reader<
         let forward = end >= start;
         // The first piece that ends after t.
         let index = of.pieces.partition_point(|piece| match forward {
-            true => piece.until <= t,
-            false => piece.until >= t,
+            true => piece.span[1] <= t,
+            false => piece.span[1] >= t,
         });
         let piece = match of.pieces.get(index) {
             Some(piece) if t != end => piece,
@@ -323,15 +314,15 @@ where
 {
     /// All its numbers, to store it. [`from_numbers`](Self::from_numbers) makes it again.
     pub fn numbers(&self) -> Vec<f64> {
-        let mut all = vec![self.t0, self.t];
+        let mut all = vec![self.t];
         self.y.clone().each_number(&mut |x| all.push(*x));
-        for Piece { until, step: Step { n, t, h }, curve } in &self.pieces {
+        for Piece { span: [from, until], step: Step { n, t, h }, curve } in &self.pieces {
             let mark = match curve {
                 Curve::Chart(..) => CHART,
                 Curve::Space(_) => SPACE,
                 Curve::Series(..) => SERIES,
             };
-            all.extend([mark, *until, f64::from_bits(*n), *t, *h]);
+            all.extend([mark, *from, *until, f64::from_bits(*n), *t, *h]);
             match curve {
                 Curve::Chart(base, coefficients) => {
                     base.clone().each_number(&mut |x| all.push(*x));
@@ -363,7 +354,7 @@ where
             Error::out_of_range("numbers", numbers.len() as f64, expected)
         };
         let mut rest = numbers.iter().copied();
-        let (Some(t0), Some(t)) = (rest.next(), rest.next()) else { return Err(wrong()) };
+        let t = rest.next().ok_or_else(wrong)?;
         let mut complete = true;
         let mut fill = |rest: &mut dyn Iterator<Item = f64>, x: &mut f64| match rest.next() {
             Some(value) => *x = value,
@@ -377,9 +368,9 @@ where
         });
         let (mut pieces, mut work) = (Vec::new(), method.work(&problem, like)?);
         while let Some(mark) = rest.next() {
-            let mut head = [0.0; 4];
+            let mut head = [0.0; 5];
             head.iter_mut().for_each(|x| fill(&mut rest, x));
-            let [until, n, start, h] = head;
+            let [from, until, n, t, h] = head;
             let curve = if mark == CHART {
                 let mut base = like.clone();
                 base.each_number(&mut |x| fill(&mut rest, x));
@@ -403,14 +394,14 @@ where
             } else {
                 return Err(wrong());
             };
-            let step = Step { n: n.to_bits(), t: start, h };
-            pieces.push(Piece { until, step, curve });
+            let step = Step { n: n.to_bits(), t, h };
+            pieces.push(Piece { span: [from, until], step, curve });
         }
-        let finite = |piece: &Piece<P>| piece.until.is_finite() && piece.step.h.is_finite();
-        if !complete || !t0.is_finite() || !t.is_finite() || !pieces.iter().all(finite) {
+        let finite = |piece: &Piece<P>| piece.span[1].is_finite() && piece.step.h.is_finite();
+        if !complete || !t.is_finite() || !pieces.iter().all(finite) {
             return Err(wrong());
         }
         let (problem, method) = (Held::Shared(problem), Held::Shared(method));
-        Ok(Interpolant { problem, method, pieces, t0, t, y })
+        Ok(Interpolant { problem, method, pieces, t, y })
     }
 }

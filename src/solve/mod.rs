@@ -17,6 +17,7 @@
 
 mod bracket;
 mod by_error;
+mod checks;
 mod continuous;
 mod control;
 mod drift;
@@ -470,7 +471,7 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
             Err(Interrupted { solution, .. }) => solution.as_deref(),
         };
         let end = solution.map_or((t0, start), |solution| (solution.t, solution.y.clone()));
-        (done, Interpolant::new(held, pieces, (t0, end)))
+        (done, Interpolant::new(held, pieces, end))
     }
 }
 

@@ -51,11 +51,11 @@ pub(super) trait AnyOutput {
     fn change(&mut self, event: usize, t: f64) -> Result<(), Error>;
     /// Shows the end of a step that had rows within it.
     fn see_end(&mut self, t: f64);
-    /// Stores the last step with the time up to which it is valid, if steps are stored.
+    /// Stores the last step with the times at which it began and up to which it is valid, if steps are stored.
     ///
     /// # Errors
     /// Why its polynomial could not be computed, if polynomials are stored.
-    fn keep(&mut self, t: f64, last: Step<f64>) -> Result<(), RunError>;
+    fn keep(&mut self, span: [f64; 2], last: Step<f64>) -> Result<(), RunError>;
     /// Lets the last stored step end at t.
     fn cut_kept(&mut self, t: f64);
     /// The invariants, if they are watched.
@@ -80,8 +80,8 @@ pub(super) struct Watch<P: Problem> {
     pub(super) values: fn(&P, &PointOf<P>) -> Vec<[f64; 2]>,
 }
 
-/// A stored step: the time up to which it is valid, the step, and its start.
-pub(super) type Kept<Y> = (f64, Step<f64>, Y);
+/// A stored step: the times at which it began and up to which it is valid, the step, and its start.
+pub(super) type Kept<Y> = ([f64; 2], Step<f64>, Y);
 
 /// What is kept of the steps.
 pub(super) enum Keep<'k, P: Problem> {
@@ -232,19 +232,19 @@ impl<P: Problem, M: Method<P>> AnyOutput for Output<'_, '_, P, M> {
             see(t, &self.points.y);
         }
     }
-    fn keep(&mut self, t: f64, last: Step<f64>) -> Result<(), RunError> {
+    fn keep(&mut self, span: [f64; 2], last: Step<f64>) -> Result<(), RunError> {
         let Output { points, search, kept, .. } = self;
         match kept {
             Keep::Nothing => {}
-            Keep::Starts(kept) => kept.push((t, last, points.from.clone())),
-            Keep::Pieces(pieces) => pieces.push(points.record(last, t, search)?),
+            Keep::Starts(kept) => kept.push((span, last, points.from.clone())),
+            Keep::Pieces(pieces) => pieces.push(points.record(last, span, search)?),
         }
         Ok(())
     }
     fn cut_kept(&mut self, t: f64) {
         match &mut self.kept {
             Keep::Nothing => {}
-            Keep::Starts(kept) => kept.iter_mut().last().into_iter().for_each(|last| last.0 = t),
+            Keep::Starts(kept) => kept.iter_mut().last().into_iter().for_each(|last| last.0[1] = t),
             Keep::Pieces(pieces) => {
                 pieces.iter_mut().last().into_iter().for_each(|last| last.cut(t))
             }

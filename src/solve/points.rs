@@ -4,20 +4,23 @@
 //! [`Drive`](super::drive::Drive)). It calls this part through a pointer, a few times for each step. So the compiler
 //! compiles the driver once, and only this file again for each problem and method. A step itself has no such call.
 
+use super::checks::{
+    ON_M, check_on_manifold, check_residual, checked_field, checked_start, square_of_size,
+};
 use super::control::StepControl;
 use super::held::Held;
 use super::interpolant::{Listing, Piece, no_polynomial};
-use super::stats::{Cadence, RunError, Stats, power_of_two_above, power_of_two_of_rate};
+use super::stats::{Cadence, RunError, Stats, power_of_two_of_rate};
 use crate::actions::Action;
 use crate::error::{Error, StepError};
-use crate::groups::{LieAlgebra, OFF_M_MAX};
+use crate::groups::LieAlgebra;
 use crate::methods::{
     Attempt, Attempts, Embedded, EqualSteps, Facts, Method, Step, Streak, Watch, Within,
     ratio_in_algebra,
 };
 use crate::problems::{AlgOf, PointOf, Problem, ScalarOf};
 use crate::scalar::{Real, smaller};
-use crate::space::{Metric, check_within_reach};
+use crate::space::Metric;
 use crate::tolerance::{Rule, Scales, Tolerance, Weight};
 
 /// How far from M, relative to y, a step may move because f is not in 𝔤. Rounding of f moves it less.
@@ -179,91 +182,6 @@ fn finite(is: bool) -> Result<(), StepError> {
     StepError::finite(is, "the state")
 }
 
-/// max(1, ‖y‖²).
-fn square_of_size<P: Problem>(y: &PointOf<P>) -> ScalarOf<P> {
-    let (one, size) = (ScalarOf::<P>::lit(1.0), y.size());
-    let square = size * size;
-    if square.all_below(1.0) { one } else { square }
-}
-
-/// A start whose relative residual is below this many ε is on M.
-const ON_M: f64 = 1000.0;
-
-/// Corrects y to M. Refuses a y that is farther from M than numbers with seven digits are. Returns true if y was farther
-/// from M than rounding.
-fn check_on_manifold<P: Problem>(
-    problem: &P,
-    y: &mut PointOf<P>,
-    work: &mut <P::Action as Action<P::Group>>::Work,
-) -> Result<bool, Error> {
-    let (group, action) = (problem.group(), problem.action());
-    let size = action.residual_size(group, y);
-    let Some(residual) = action.restore(group, y, work) else {
-        return Ok(false);
-    };
-    let residual = residual / size;
-    check_residual(problem, residual)?;
-    Ok(!residual.all_below(ON_M * ScalarOf::<P>::EPSILON))
-}
-
-/// Refuses the relative residual of a y that is farther from M than numbers with seven digits are.
-fn check_residual<P: Problem>(problem: &P, residual: ScalarOf<P>) -> Result<(), Error> {
-    match residual.all_below(OFF_M_MAX) {
-        true => Ok(()),
-        false => Err(Error::NotOnGroup {
-            arg: "y",
-            group: problem.group().name(),
-            residual: power_of_two_above(residual),
-            tolerance: OFF_M_MAX,
-        }),
-    }
-}
-
-/// Checks the start of a run, and the tolerance for it, and corrects it to M where it is off by more than rounding, as
-/// numbers with few digits are. Returns the scratch of the action.
-fn checked_start<P: Problem>(
-    problem: &P,
-    y: &mut PointOf<P>,
-    tolerance: Option<&Tolerance>,
-) -> Result<<P::Action as Action<P::Group>>::Work, Error> {
-    let (group, action) = (problem.group(), problem.action());
-    action.check(group, y)?;
-    let mut restore = action.work(group);
-    let mut on = y.clone();
-    if check_on_manifold(problem, &mut on, &mut restore)? {
-        y.assign(&on);
-    }
-    action.check_member(group, y)?;
-    if let Some(tolerance) = tolerance {
-        let size = y.size();
-        if !(size * size).all_below(f64::INFINITY) {
-            let expected = "a size below 1e154, whose square is a number: take other units";
-            return Err(Error::out_of_range("‖y‖", power_of_two_above(size), expected));
-        }
-        tolerance.check_rounding::<ScalarOf<P>>()?;
-        let mut parts = tolerance.scales();
-        let none = action.error_ratio(group, &group.zero(), y, &mut parts);
-        tolerance.check(parts.asked(), none.any_below(f64::INFINITY))?;
-        check_within_reach(tolerance, y)?;
-    }
-    Ok(restore)
-}
-
-/// Room for a value of f with its scratch. Checks f(t, y) at the time `at`.
-fn checked_field<P: Problem>(
-    problem: &P,
-    at: Option<f64>,
-    y: &PointOf<P>,
-) -> Result<(AlgOf<P>, P::Work), Error> {
-    let group = problem.group();
-    let (mut v, mut field) = (group.zero(), problem.work());
-    if let Some(t) = at {
-        problem.f(ScalarOf::<P>::lit(t), y, &mut v, &mut field);
-        group.check("f", &v)?;
-    }
-    Ok((v, field))
-}
-
 impl<'a, P: Problem, M: Method<P>> Points<'a, P, M> {
     /// Makes the points of a run that starts at y. Checks f(t, y) at the time `field_at`. Returns them with the costs of a
     /// step and, for an adaptive step size, the order of the error.
@@ -353,7 +271,7 @@ impl<'a, P: Problem, M: Method<P>> Points<'a, P, M> {
     pub(super) fn record(
         &mut self,
         last: Step<f64>,
-        until: f64,
+        span: [f64; 2],
         at: &mut PointOf<P>,
     ) -> Result<Piece<P>, RunError> {
         let Points { problem, method, from, work, list, .. } = self;
@@ -361,7 +279,7 @@ impl<'a, P: Problem, M: Method<P>> Points<'a, P, M> {
         let (Some(list), true) = (*list, method.within(work) != Within::Steps) else {
             return Err(no_polynomial().into());
         };
-        Piece::record((problem, method), (last, until), from, work, (at, list))
+        Piece::record((problem, method), (last, span), from, work, (at, list))
             .map_err(|source| RunError::Within { t: last.t, h: last.h, source })
     }
 

@@ -2,7 +2,6 @@
 
 use crate::error::Error;
 use crate::samples::Samples;
-use crate::scalar::Real;
 
 /// Times at which a step ends, in any order, and also outside the span. A list of times is one of jumps.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -85,11 +84,6 @@ impl Stops {
 /// The stages of a step to a jump of f are so many rounding units of time before it.
 pub(super) const MARGIN: f64 = 4.0;
 
-/// The rounding of the times of stages, relative to them: that of these numbers, and of the times of a run.
-pub(super) fn epsilon_of_times<S: Real>() -> f64 {
-    S::EPSILON.max(f64::EPSILON)
-}
-
 /// A rounding unit of time, in the direction from t to `end`; 0 where a step between them is almost as short as that, or the
 /// unit has no half.
 ///
@@ -98,10 +92,4 @@ pub(super) fn unit([t, end]: [f64; 2], epsilon: f64) -> f64 {
     let unit = epsilon * t.abs().max(end.abs());
     let counts = (end - t).abs() > 100.0 * unit && unit >= f64::MIN_POSITIVE;
     if counts { unit.copysign(end - t) } else { 0.0 }
-}
-
-/// The time at which the first step of a run begins: t₀, where its stages are a little after a stop there.
-pub(super) fn begin_of(stages: f64, [t0, end]: [f64; 2], epsilon: f64) -> f64 {
-    let margin = 2.0 * MARGIN * epsilon * t0.abs().max(end.abs());
-    if (stages - t0).abs() <= margin { t0 } else { stages }
 }

@@ -45,13 +45,13 @@ fn _lieflow(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(solve::check_method, m)?)?;
     m.add_function(wrap_pyfunction!(solve::time_to_search, m)?)?;
     m.add_function(wrap_pyfunction!(solve::other_tolerance, m)?)?;
+    m.add_function(wrap_pyfunction!(solve::finer, m)?)?;
     m.add_function(wrap_pyfunction!(solve::search_step, m)?)?;
     m.add_function(wrap_pyfunction!(solve::is_elsewhere, m)?)?;
     m.add_function(wrap_pyfunction!(solve::near_ends, m)?)?;
     m.add_function(wrap_pyfunction!(solve::stays, m)?)?;
     m.add("LAST_DIGITS", lieflow_model::problem::LAST_DIGITS)?;
     m.add("SHORT_STEPS", lieflow_model::problem::SHORT_STEPS)?;
-    m.add("FINER", lieflow_model::problem::FINER)?;
     m.add("GRADED_MOST", lieflow_model::problem::GRADED_MOST)?;
     m.add("__version__", env!("CARGO_PKG_VERSION"))
 }

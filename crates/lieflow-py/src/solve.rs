@@ -142,6 +142,12 @@ pub(crate) fn other_tolerance(rtol: f64, atol: f64) -> f64 {
     lieflow_model::problem::other_tolerance([rtol, atol])
 }
 
+/// How many times shorter the steps of a second search are, after a first one that took so many seconds.
+#[pyfunction]
+pub(crate) fn finer(seconds: f64, most: f64) -> Option<f64> {
+    lieflow_model::problem::finer(seconds, most)
+}
+
 /// The size of the steps of a search beside steps of one size.
 #[pyfunction]
 pub(crate) fn search_step(length: f64, largest: f64) -> f64 {

@@ -16,7 +16,7 @@ pub use lieflow_runs::run::*;
 pub use model::{Model, Problem};
 pub(crate) use quantity::*;
 pub use second_run::{
-    FINER, GOLDEN, GRADED_MOST, LAST_DIGITS, SHORT_STEPS, is_elsewhere, near_ends, other_tolerance,
+    GOLDEN, GRADED_MOST, LAST_DIGITS, SHORT_STEPS, finer, is_elsewhere, near_ends, other_tolerance,
     search_step, stays, stop_after_hardest, time_to_search,
 };
 pub(crate) use system::*;

@@ -37,12 +37,20 @@ pub fn is_elsewhere(distance: f64, known: f64) -> bool {
     distance > PASSED_OVER * known
 }
 
-/// A second search beside steps of one size has steps that are so many times shorter.
-pub const FINER: f64 = 32.0;
-/// It is at this part of the distance of the first one at least, where the run is wrong.
+/// A second search beside steps of one size has steps that are so many times shorter. The second number is for a search that
+/// would take too long with the first.
+const FINER: [f64; 2] = [32.0, 8.0];
+
+/// How many times shorter the steps of a second search are, after a first one that took so many seconds. `None` if it would take
+/// more than `most`.
+pub fn finer(seconds: f64, most: f64) -> Option<f64> {
+    FINER.into_iter().find(|times| times * seconds < most)
+}
+
+/// A finer search is at this part of the distance of the first one at least, where the run is wrong.
 const STAYS: f64 = 0.25;
 
-/// Does the distance of a run from a search stay in one of [`FINER`] steps? Where it falls, it is mostly the error of the
+/// Does the distance of a run from a search stay in a [`finer`] one? Where it falls, it is mostly the error of the
 /// search.
 pub fn stays(finer: f64, distance: f64) -> bool {
     finer > STAYS * distance

@@ -18,7 +18,6 @@ __all__ = [
     "MatrixGroup",
     "Model",
     "Problem",
-    "FINER",
     "GRADED_MOST",
     "SHORT_STEPS",
     "SampledField",
@@ -34,6 +33,7 @@ __all__ = [
     "is_elsewhere",
     "near_ends",
     "other_tolerance",
+    "finer",
     "search_step",
     "stays",
     "se3_cay",
@@ -58,7 +58,6 @@ __all__ = [
 ]
 LAST_DIGITS: float
 SHORT_STEPS: int
-FINER: float
 GRADED_MOST: int
 __version__: str
 
@@ -247,6 +246,7 @@ def kinds() -> list[dict[str, Any]]: ...
 def bundled() -> list[str]: ...
 def check_method(method: str) -> str: ...
 def other_tolerance(rtol: float, atol: float) -> float: ...
+def finer(seconds: float, most: float) -> float | None: ...
 def search_step(length: float, largest: float) -> float: ...
 def is_elsewhere(distance: float, known: float) -> bool: ...
 def stays(finer: float, distance: float) -> bool: ...

@@ -19,8 +19,6 @@ __all__ = ["Repeated", "beyond", "changed", "finer", "second"]
 ROUNDING = 1e-12
 #: Further runs take so many seconds at most.
 PATIENCE = 3.0
-#: A finer search has steps that are so many times shorter, where ``FINER`` takes longer than that.
-COARSE = 8.0
 
 #: What a run is compared with, its result, and the first run again from a changed start.
 Repeated = tuple[str, Result, Result | None]
@@ -112,11 +110,9 @@ def _searched(
     if search.status < 0 or not _lieflow.is_elsewhere(_apart(first, search), known):
         return found
     nearer = search
-    for times in (_lieflow.FINER, COARSE):
-        if times * spent < PATIENCE:
-            size /= times
-            nearer = run({**settings, "dt": size})
-            break
+    if times := _lieflow.finer(spent, PATIENCE):
+        size /= times
+        nearer = run({**settings, "dt": size})
     # Points within a step may have a lower order, which is no jump.
     if nearer.status < 0 or not _lieflow.is_elsewhere(_apart(first, nearer), known):
         return found

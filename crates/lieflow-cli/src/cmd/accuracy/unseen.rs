@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use lieflow::problems::explained_by_rounding;
 use lieflow_model::problem::{
-    FINER, GRADED_MOST, LAST_DIGITS, SHORT_STEPS, is_elsewhere, search_step, stays, time_to_search,
+    GRADED_MOST, LAST_DIGITS, SHORT_STEPS, finer, is_elsewhere, search_step, stays, time_to_search,
 };
 use lieflow_timing::cpu_seconds;
 
@@ -135,7 +135,9 @@ impl Check<'_> {
             let apart = self.rows_apart(times, [a, b], sizes);
             self.judge((FoundBy::ShortSteps, 1.0), &apart, moved, clock)
         };
+        let begun = cpu_seconds();
         let (others, taken) = self.rows_at(way, times)?;
+        let spent = cpu_seconds() - begun;
         let found = distances(rows, &others);
         let growth = (moved / (OF_CHANGE * LAST_DIGITS)).max(1.0);
         let rounding = explained_by_rounding(taken.steps, growth);
@@ -156,9 +158,13 @@ impl Check<'_> {
         {
             return Ok(Found::Nothing);
         }
-        let finer = self.rows_at(Way { factor: way.factor / FINER, ..way }, times);
+        let left = self.deadline.get().map_or(f64::INFINITY, |until| until - cpu_seconds());
+        let finer = finer(spent, left).and_then(|times_shorter| {
+            let way = Way { factor: way.factor / times_shorter, ..way };
+            self.rows_at(way, times).ok()
+        });
         let nearer = match finer.map(|(finer, _)| distances(rows, &finer)) {
-            Ok(distance) if stays(distance.relative(), found.relative()) => {
+            Some(distance) if stays(distance.relative(), found.relative()) => {
                 return Ok(Found::Elsewhere { distance, is_at_end, last });
             }
             nearer => nearer.unwrap_or(found),
