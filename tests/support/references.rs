@@ -138,7 +138,7 @@ pub(crate) fn cases(file: &str) -> Vec<Case> {
     struct File {
         cases: Vec<Case>,
     }
-    let path = format!("{}/tests/references/{file}.json", env!("CARGO_MANIFEST_DIR"));
+    let path = format!("{}/references/{file}.json", env!("CARGO_MANIFEST_DIR"));
     let text = std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{path}: {e}"));
     serde_json::from_str::<File>(&text).unwrap_or_else(|e| panic!("{path}: {e}")).cases
 }

@@ -14,5 +14,4 @@ mod rooms;
 mod scalars;
 mod so3_closed;
 mod tableaus;
-#[cfg(feature = "tally")]
 mod tally;

@@ -6,17 +6,17 @@
 use lieflow::scalar::{Real, Select, Trig};
 use lieflow::{error, scalar, space};
 
-#[path = "../src/scalar/double_double.rs"]
+#[path = "../../src/scalar/double_double.rs"]
 mod double_double;
-#[path = "../src/methods/taylor/lanes.rs"]
+#[path = "../../src/methods/taylor/lanes.rs"]
 mod lanes;
-#[path = "../src/dense/linear_algebra.rs"]
+#[path = "../../src/dense/linear_algebra.rs"]
 mod linear_algebra;
-#[path = "../src/dense/schur.rs"]
+#[path = "../../src/dense/schur.rs"]
 mod schur;
-#[path = "../src/methods/taylor/series.rs"]
+#[path = "../../src/methods/taylor/series.rs"]
 mod series;
-#[path = "../src/scalar/sin_cos.rs"]
+#[path = "../../src/scalar/sin_cos.rs"]
 mod sin_cos;
-#[path = "../src/methods/tableau/trees.rs"]
+#[path = "../../src/methods/tableau/trees.rs"]
 mod trees;
