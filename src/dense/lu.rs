@@ -38,7 +38,7 @@ fn solve_ops(n: usize, columns: usize) -> Ops {
 }
 
 impl Lu {
-    /// Workspace for n×n, with at most n right-hand sides.
+    /// Workspace for n×n. More than n right-hand sides are solved n at a time.
     pub(crate) fn new(n: usize) -> Self {
         let req = factor::lu_in_place_scratch::<usize, f64>(n, n, Par::Seq, Default::default())
             .or(solve::solve_in_place_scratch::<usize, f64>(n, n, Par::Seq));
@@ -79,7 +79,7 @@ impl Lu {
         if high > 0.0 && high.is_finite() { low / high } else { 0.0 }
     }
 
-    /// b ← a⁻¹b. `b` has at most n columns.
+    /// b ← a⁻¹b.
     pub(crate) fn solve(&mut self, mut b: MatMut<'_, f64>) {
         tally(|| solve_ops(self.a.nrows(), b.ncols()));
         match self.a.nrows() {
@@ -91,15 +91,17 @@ impl Lu {
             7 => self.solve_small::<7>(b),
             SMALL => self.solve_small::<SMALL>(b),
             n => {
-                let perm = PermRef::new_checked(&self.perm, &self.perm_inv, n);
-                solve::solve_in_place(
-                    self.a.as_ref(),
-                    self.a.as_ref(),
-                    perm,
-                    b.as_mut(),
-                    Par::Seq,
-                    MemStack::new(&mut self.mem),
-                );
+                for first in (0..b.ncols()).step_by(n) {
+                    let columns = n.min(b.ncols() - first);
+                    solve::solve_in_place(
+                        self.a.as_ref(),
+                        self.a.as_ref(),
+                        PermRef::new_checked(&self.perm, &self.perm_inv, n),
+                        b.as_mut().subcols_mut(first, columns),
+                        Par::Seq,
+                        MemStack::new(&mut self.mem),
+                    );
+                }
             }
         }
     }

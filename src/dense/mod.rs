@@ -15,7 +15,7 @@ mod schur;
 mod symmetric;
 
 pub use crate::error::RCOND_MIN;
-pub(crate) use ad::{AdForm, AdKind, AdSchur, Direction};
+pub(crate) use ad::{AdForm, AdKind, AdSchur, Direction, NearlySingular};
 pub(crate) use eigen::{ComplexBlocks, SkewEigen};
 pub(crate) use expm::Expm;
 pub use expm::{

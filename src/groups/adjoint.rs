@@ -32,7 +32,7 @@ pub trait Adjoint: LieGroup {
     /// out ← g⁻¹. Allocates nothing.
     ///
     /// # Errors
-    /// [`StepError::NotFinite`] for a singular g on GL(n).
+    /// [`StepError::NotFinite`] for a singular g on GL(n). Then out has numbers that are not finite.
     fn invert(
         &self,
         g: &Self::Elem,

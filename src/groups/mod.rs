@@ -192,7 +192,8 @@ pub trait LieGroup: LieAlgebra {
         x.size().is_finite()
     }
 
-    /// The size that a residual of g is relative to: 1 on a compact group, max(1, ‖g‖²) where elements may be large.
+    /// The size that a residual of g is relative to: 1 on a compact group, max(1, ‖g‖²) where elements may be large; on G_M
+    /// that times ‖M‖‖M⁻¹‖/n, where this is above 10.
     fn residual_size(&self, _g: &Self::Elem) -> Self::Scalar {
         Self::Scalar::lit(1.0)
     }
@@ -200,10 +201,17 @@ pub trait LieGroup: LieAlgebra {
     ///
     /// The correction is Newton–Schulz in residual form. For M symmetric or skew it is g ← g + g(𝟙 − M⁻¹gᵀMg)/2.
     ///
-    /// g is not changed in four cases: its residual is at rounding level, ε‖g‖²; its residual is [`RESIDUAL_MAX`] or
-    /// more; for this M no step is known to converge; ‖g‖² is so large on a non-compact group, 90 and more above n, that
-    /// the rounding of the correction moves g by more than a run does. On a non-compact group the rounding level grows with ‖g‖², so
-    /// compare the returned residual with it. Groups without a form return 0.
+    /// g is not changed in five cases:
+    ///
+    /// - its residual is at rounding level, ε‖g‖²;
+    /// - its residual is [`RESIDUAL_MAX`] or more;
+    /// - for this M no step is known to converge;
+    /// - M is far from a multiple of an orthogonal matrix, ‖M‖‖M⁻¹‖ > 10 n;
+    /// - ‖g‖² is so large on a non-compact group, 90 and more above n, that the rounding of the correction moves g by more than a
+    ///   run does.
+    ///
+    /// On a non-compact group the rounding level grows with ‖g‖², so compare the returned residual with it. Groups without a form
+    /// return 0.
     ///
     /// `scratch` is overwritten. Nothing is allocated.
     fn correct(&self, _g: &mut Self::Elem, _scratch: [&mut Self::Elem; 2]) -> Self::Scalar {

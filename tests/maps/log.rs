@@ -343,3 +343,34 @@ fn logarithms_of_unitary_matrices() {
         }
     }
 }
+
+/// What the projection onto 𝔤 takes away beside half turns is told, too.
+#[test]
+fn a_logarithm_that_is_not_in_the_algebra_has_no_digits() {
+    let half_turn = |d: f64| {
+        let a = [1.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0];
+        let (c, s) = (-d.cos(), d.sin());
+        let hat = [[0.0, -a[2], a[1]], [a[2], 0.0, -a[0]], [-a[1], a[0], 0.0]];
+        let scale = [1.0, 2.0, 3.0];
+        Mat::from_fn(3, 3, |i, j| {
+            let one = if i == j { c } else { 0.0 };
+            (one + s * hat[i][j] + (1.0 - c) * a[i] * a[j]) * scale[j] / scale[i]
+        })
+    };
+    let m = Mat::from_fn(3, 3, |i, j| if i == j { ((i + 1) * (i + 1)) as f64 } else { 0.0 });
+    let group = MatrixGroup::gm(m).expect("a group");
+    let mut found = [0, 0];
+    for k in 2..=15 {
+        let g = group.element(half_turn(10f64.powi(-k))).expect("an element");
+        match group.log(&g) {
+            Ok(u) => {
+                let gap = (&*exp(&group, &u) - &*g).norm_l2() / g.norm_l2();
+                assert!(gap < 1e-7, "π − 1e-{k}: {gap:e}");
+                found[0] += 1;
+            }
+            Err(Error::NoLogarithm { .. }) => found[1] += 1,
+            Err(error) => panic!("π − 1e-{k}: {error}"),
+        }
+    }
+    assert!(found[0] > 4 && found[1] > 2, "{found:?}");
+}

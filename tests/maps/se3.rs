@@ -305,3 +305,18 @@ fn drift_is_corrected() {
         affine(&Mat::from_fn(3, 3, |i, j| g.0[(i, j)]), &g.1, 1.0) * SE3.vector_matrix(&p);
     assert!(gap(&SE3.vector_matrix(&q), &by_matrix) < 8.0 * EPS * by_matrix.norm_l2());
 }
+
+/// The rotation of exp is one as that of exp on so(3) is: to 4√3 roundings.
+#[test]
+fn the_rotation_of_a_motion_is_one() {
+    let mut rng = Pcg64::seed_from_u64(11);
+    for size in [0.5, 3.0, 10.0, 100.0] {
+        let mut worst = 0.0f64;
+        for _ in 0..400 {
+            let mut u = SE3.sample_algebra(&mut rng, 1.0);
+            u.0 *= size / u.0.norm();
+            worst = worst.max(SE3.defect(&Exp.eval(&SE3, &u).expect("exp")));
+        }
+        assert!(worst < 4.0 * 3f64.sqrt() * EPS, "{size}: {} roundings", worst / EPS);
+    }
+}

@@ -18,4 +18,5 @@ mod log;
 mod references;
 mod se3;
 mod so3_batch;
+mod stretched;
 mod structured;

@@ -23,7 +23,7 @@ impl Action<MatrixGroup> for Coadjoint {
 
     fn work(&self, group: &MatrixGroup) -> CoadjointWork {
         let n = group.n();
-        let lu = matches!(group.form(), Form::Free).then(|| Lu::new(n));
+        let lu = group.inverts_by_factors().then(|| Lu::new(n));
         CoadjointWork { left: Mat::zeros(n, n), product: Mat::zeros(n, n), lu }
     }
     fn check(&self, group: &MatrixGroup, p: &Mat<f64>) -> Result<(), Error> {
@@ -39,7 +39,7 @@ impl Action<MatrixGroup> for Coadjoint {
     ) {
         let CoadjointWork { left, product, lu } = work;
         match (group.form(), lu) {
-            (Form::Free, Some(lu)) => {
+            (_, Some(lu)) => {
                 lu.a.copy_from(g.transpose());
                 lu.factor();
                 product.copy_from(p);

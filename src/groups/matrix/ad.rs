@@ -2,7 +2,10 @@
 
 use super::parts::{Symmetry, has_scalar_part, inverse_of, part, symmetry};
 use super::{Form, MatrixGroup};
-use crate::dense::{AdForm, AdKind, norm1};
+use faer::Mat;
+
+use crate::dense::{AdForm, AdKind, AdSchur, NearlySingular, norm1};
+use crate::error::StepError;
 
 /// A part S of M replaces M only if 1/(‖M‖₁‖S⁻¹‖₁) is at least this. This number is small for a part that is nearly
 /// singular, and for one that is small beside M.
@@ -42,6 +45,31 @@ impl MatrixGroup {
                     .map(|(_, form)| form),
             },
         }
+    }
+
+    /// The form by which functions of ad_u are computed. None where M is stretched: products with M and M⁻¹ would lose digits,
+    /// and 𝔤 is a part of 𝔤𝔩(n).
+    pub(crate) fn ad_coordinates(&self) -> Option<AdForm> {
+        if self.is_stretched() { None } else { self.ad_form() }
+    }
+
+    /// A function of ad_u, which `apply` computes in these coordinates or says to be singular. With a stretched M they are those
+    /// of 𝔤𝔩(n), where more u are singular: there the form decides. `apply` leaves its result as it is where it fails.
+    pub(crate) fn function_of_ad(
+        &self,
+        schur: &mut AdSchur,
+        u: &Mat<f64>,
+        mut apply: impl FnMut(&mut AdSchur) -> Result<(), NearlySingular>,
+    ) -> Result<Result<(), NearlySingular>, StepError> {
+        schur.factor(u)?;
+        let found = apply(schur);
+        if found.is_ok() || !self.is_stretched() {
+            return Ok(found);
+        }
+        let Some(form) = self.ad_form() else { return Ok(found) };
+        let mut by_form = AdSchur::new(self.n(), Some(form));
+        by_form.factor(u)?;
+        Ok(apply(&mut by_form))
     }
 
     /// True if every u ∈ 𝔤 is skew-symmetric, as on SO(n) and on U(m) = G_{𝟙+J}. This is so if the symmetric part of M is

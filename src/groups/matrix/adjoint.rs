@@ -9,7 +9,7 @@ use crate::groups::{Adjoint, LieGroup};
 use crate::scalar::{Ops, tally};
 use crate::space::LinearSpace;
 
-/// Scratch for the inverse: M⁻¹gᵀ on G_M, the factors of g on GL(n).
+/// Scratch for the inverse: M⁻¹gᵀ on G_M, the factors of g on GL(n) and where M is stretched.
 #[derive(Debug)]
 pub struct InvertingWork {
     product: Mat<f64>,
@@ -17,14 +17,15 @@ pub struct InvertingWork {
 }
 
 /// [`big_ad`](Adjoint::big_ad) and [`coad_group`](Adjoint::coad_group) allocate. Cost: two products and the inverse,
-/// which is free on SO(n) and Sp(2m), two products on G_M, and an LU on GL(n).
+/// which is free on SO(n) and Sp(2m), two products on G_M, and an LU on GL(n). Where ‖M‖‖M⁻¹‖ is above 10 n it is an LU on
+/// G_M, too: there M⁻¹gᵀM would lose digits.
 impl Adjoint for MatrixGroup {
     type Dual = Mat<f64>;
     type Inverting = InvertingWork;
 
     fn inverting(&self) -> InvertingWork {
         let n = self.n();
-        let lu = matches!(self.form(), Form::Free).then(|| Lu::new(n));
+        let lu = self.inverts_by_factors().then(|| Lu::new(n));
         InvertingWork { product: Mat::zeros(n, n), lu }
     }
 
@@ -49,14 +50,15 @@ impl Adjoint for MatrixGroup {
                     }
                 }
             }
-            Form::Bilinear { m, inverse } => {
+            Form::Bilinear { m, inverse } if !self.is_stretched() => {
                 mul(product, inverse.as_ref(), g.transpose());
                 mul(out, product.as_ref(), m.as_ref());
             }
-            Form::Free => {
+            Form::Free | Form::Bilinear { .. } => {
                 let lu = lu.get_or_insert_with(|| Lu::new(self.n()));
                 lu.a.copy_from(&**g);
                 if lu.factor() == 0.0 {
+                    out.fill(f64::NAN);
                     return Err(StepError::NotFinite { what: "g⁻¹" });
                 }
                 out.fill(0.0);
@@ -112,6 +114,13 @@ impl Adjoint for MatrixGroup {
 
     fn pair(&self, m: &Mat<f64>, v: &AlgebraMatrix) -> f64 {
         m.dot(v)
+    }
+}
+
+impl MatrixGroup {
+    /// True if inverses are by the LU of g, and not by the form.
+    pub(crate) fn inverts_by_factors(&self) -> bool {
+        matches!(self.form(), Form::Free) || self.is_stretched()
     }
 }
 

@@ -10,7 +10,8 @@ use crate::groups::{LieAlgebra, MEMBERSHIP, OFF_M_MAX};
 
 /// The largest distance of a determinant from 1 that a checked constructor allows.
 const DETERMINANT: f64 = 1e-10;
-/// The least reciprocal condition number of a start on GL(n): the pivots of a singular matrix are 0, or rounding.
+/// The least reciprocal condition number of a start on GL(n), its rows and its columns divided by their largest entries: the
+/// pivots of a singular matrix are 0, or rounding.
 const PIVOT_MIN: f64 = 1e-30;
 
 /// From this condition number of M on, a residual relative to ‖M‖ does not see the small directions of M. Example: for
@@ -23,6 +24,19 @@ const ROUNDING_MAX: f64 = 0.1;
 pub(super) fn behind_inverse(n: usize, rcond: f64) -> Option<f64> {
     let rounding = 8.0 * n as f64 * f64::EPSILON / rcond;
     (rcond * SCALED_FROM < 1.0).then(|| rounding.min(ROUNDING_MAX))
+}
+
+/// g with rows, and then columns, whose largest entry is 1 in size. A row or a column of zeros stays.
+fn balanced(g: &Mat<f64>) -> Mat<f64> {
+    let n = g.nrows();
+    let by = |x: f64| if x > 0.0 { x } else { 1.0 };
+    let rows: Vec<f64> = (0..n).map(|i| by(g.row(i).norm_max())).collect();
+    let mut x = Mat::from_fn(n, n, |i, j| g[(i, j)] / rows[i]);
+    for j in 0..n {
+        let largest = by(x.col(j).norm_max());
+        x.col_mut(j).iter_mut().for_each(|x| *x /= largest);
+    }
+    x
 }
 
 pub(super) fn square(arg: &'static str, x: MatRef<'_, f64>) -> Result<(), Error> {
@@ -180,8 +194,8 @@ impl MatrixGroup {
         }
     }
 
-    /// g, with the form of the group, is in the subgroup, to `tolerance`; for the determinant to `tolerance` times the
-    /// product of the norms of the rows. No element of SO(n) is a reflection.
+    /// g, with the form of the group, is in the subgroup, to `tolerance`; the determinant is 1 to `tolerance`, and to its
+    /// rounding, which is relative to the product of the norms of the rows. No element of SO(n) is a reflection.
     pub(super) fn check_subgroup(
         &self,
         arg: &'static str,
@@ -206,7 +220,8 @@ impl MatrixGroup {
             }
         };
         let size: f64 = (0..self.n()).map(|i| g.row(i).norm_l2()).product();
-        match (det - c64::ONE).norm() > tolerance.max(DETERMINANT) * size.max(1.0) {
+        let rounding = 8.0 * self.n() as f64 * f64::EPSILON * size;
+        match (det - c64::ONE).norm() > tolerance.max(DETERMINANT) + rounding {
             true => Err(Error::Determinant { arg, group: self.name(), re: det.re, im: det.im }),
             false => Ok(()),
         }
@@ -217,7 +232,7 @@ impl MatrixGroup {
     pub(super) fn check_start(&self, arg: &'static str, g: &Mat<f64>) -> Result<(), Error> {
         self.size(arg, g.as_ref())?;
         if matches!(self.form(), Form::Free) {
-            let rcond = Lu::rcond(g.as_ref());
+            let rcond = Lu::rcond(balanced(g).as_ref());
             if rcond < PIVOT_MIN {
                 return Err(Error::Singular { arg, rcond, minimum: PIVOT_MIN });
             }

@@ -9,6 +9,7 @@
 //! | P² = −𝟙 | (3D − 2D♯ + D♯♯)/4 | O(D²) |
 //! | any other, 𝔤 skew: products of such | the same | \|1 + μ\|/2 of the one before, X♯♯ = μX |
 //! | any other | 0 | no step is known to converge |
+//! | where ‖M‖‖M⁻¹‖ is above 10 n | 0 | a step would move g by more than a run does |
 //!
 //! On U(m), with M = c𝟙 + K and P = K/c, an element is orthogonal and commutes with P. There the code subtracts the
 //! part that does not commute, A = (g + PgP)/2. D is 𝟙 − gᵀg of the rest. This takes four products instead of nine. The
@@ -16,7 +17,7 @@
 
 use faer::{ColMut, ColRef, Mat};
 
-use super::parts::{has_scalar_part, symmetry};
+use super::parts::{has_scalar_part, stretch, symmetry};
 use super::{Form, GroupMatrix, MatrixGroup};
 use crate::dense::{axpy, mul, mul_add, norm_frobenius, scaled_sum};
 use crate::groups::RESIDUAL_MAX;
@@ -144,8 +145,11 @@ impl Cosquare {
 impl MatrixGroup {
     /// [`LieGroup::residual_size`](crate::LieGroup::residual_size) of the element with this matrix.
     pub fn residual_size_of(&self, g: &Mat<f64>) -> f64 {
-        match self.form {
+        match &self.form {
             Form::Identity => 1.0,
+            Form::Bilinear { m, inverse } if self.is_stretched => {
+                stretch(m, inverse) * norm_frobenius(g).powi(2).max(1.0)
+            }
             _ => norm_frobenius(g).powi(2).max(1.0),
         }
     }
@@ -167,7 +171,8 @@ impl MatrixGroup {
             let noise = f64::EPSILON * (square - 0.5 * n);
             let is_large = f64::EPSILON * (square - n) > LARGE;
             let reach = residual > noise && residual < RESIDUAL_MAX && !is_large;
-            if !reach || matches!(self.cosquare, Cosquare::Other) {
+            // With a stretched M a rounding of g is a large residual, and X = D/2 is not the least correction.
+            if !reach || self.is_stretched || matches!(self.cosquare, Cosquare::Other) {
                 break;
             }
             let quadratic = match (&self.form, &self.cosquare) {

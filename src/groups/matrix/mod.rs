@@ -72,6 +72,8 @@ pub struct MatrixGroup {
     behind_inverse: Option<f64>,
     /// M⁻ᵀM, which decides how elements are corrected.
     cosquare: Cosquare,
+    /// Is M far from a multiple of an orthogonal matrix? Products with M and M⁻¹ lose digits there.
+    is_stretched: bool,
 }
 
 /// A subgroup of the group of the form. Runs are those of the whole group, and f keeps them in the subgroup.
@@ -100,6 +102,7 @@ impl MatrixGroup {
             projector: OnceLock::new(),
             behind_inverse: None,
             cosquare,
+            is_stretched: false,
         })
     }
 
@@ -167,8 +170,9 @@ impl MatrixGroup {
             return Err(Error::Singular { arg: "M", rcond, minimum: RCOND_MIN });
         }
         let inverse = inverse_of(&m);
+        let is_stretched = parts::stretch(&m, &inverse) > parts::STRETCHED;
         let group = Self::new(n, Form::Bilinear { m, inverse }, format!("G_M({n})"))?;
-        Ok(MatrixGroup { behind_inverse: check::behind_inverse(n, rcond), ..group })
+        Ok(MatrixGroup { behind_inverse: check::behind_inverse(n, rcond), is_stretched, ..group })
     }
 
     /// SL(n): GL(n) with determinant 1. exp stays on it; cay does not for n > 2.
@@ -199,6 +203,10 @@ impl MatrixGroup {
         Ok(MatrixGroup { name: format!("SU({n})"), subgroup, ..Self::u(n)? })
     }
 
+    /// True if M is far from a multiple of an orthogonal matrix.
+    pub(crate) fn is_stretched(&self) -> bool {
+        self.is_stretched
+    }
     /// True if the determinant is 1 where the form leaves it free.
     pub(crate) fn is_special(&self) -> bool {
         self.subgroup.is_special

@@ -17,6 +17,14 @@ const CHANGE_MAX: f64 = 1e-3;
 /// within 1e-12 is skew to 1e-9.
 const SCALAR_MIN: f64 = 1e-3;
 
+/// Products with M and M⁻¹ lose about as many roundings as the stretch of M. Above this one other formulas are taken.
+pub(super) const STRETCHED: f64 = 10.0;
+
+/// ‖M‖‖M⁻¹‖/n in the Frobenius norm: 1 for a multiple of an orthogonal matrix, and about the condition number of others.
+pub(super) fn stretch(m: &Mat<f64>, inverse: &Mat<f64>) -> f64 {
+    norm_frobenius(m) * norm_frobenius(inverse) / m.nrows() as f64
+}
+
 /// Mᵀ = ±M.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Symmetry {

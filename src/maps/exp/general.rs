@@ -87,7 +87,7 @@ impl ExpAt {
                     Exact::Complex(Box::new(ComplexBlocks::new(group.n() / 2)))
                 }
                 true if group.is_skew() => Exact::Eigen(Box::new(SkewEigen::new(n))),
-                true => Exact::Schur(Box::new(AdSchur::new(n, group.ad_form()))),
+                true => Exact::Schur(Box::new(AdSchur::new(n, group.ad_coordinates()))),
             },
             spectrum: None,
             dexpinv: Dexpinv::None,
@@ -217,9 +217,9 @@ fn halve(
     direction: Direction,
     v: &mut AlgebraMatrix,
 ) -> Result<(), StepError> {
-    schur.factor(u)?;
     let singular = SINGULAR * group.norm(u).max(1.0);
-    schur.halvings(s, direction, singular, v).map_err(|_| SINGULAR_AT)?;
+    let apply = |schur: &mut AdSchur| schur.halvings(s, direction, singular, v);
+    group.function_of_ad(schur, u, apply)?.map_err(|_| SINGULAR_AT)?;
     finite(group, v, "dexp_u or its inverse")
 }
 

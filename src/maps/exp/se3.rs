@@ -20,7 +20,7 @@ use crate::error::{Error, StepError};
 use crate::groups::{LieAlgebra, Se3, Se23, finite_pair, finite_three};
 use crate::maps::CoordinateMap;
 use crate::scalar::Trig;
-use crate::so3::{self, Angle, rodrigues, rodrigues_on};
+use crate::so3::{self, Angle, rodrigues_on};
 use crate::so3::{add3, cross};
 
 type Twist<S> = (Vector3<S>, Vector3<S>);
@@ -45,11 +45,11 @@ impl<S: Trig> CoordinateMap<Se3<S>> for Exp {
         at: &mut Angle<S>,
         g: &mut BodyMotion<S>,
     ) -> Result<(), StepError> {
-        let (angle, a, b) = Angle::with_exp(omega);
+        let (angle, rotation) = Angle::with_matrix(omega);
         *at = angle;
         if angle.in_range() {
-            let (b_of_j, d) = angle.dexp_coefficients();
-            *g = (rodrigues(omega, a, b), rodrigues_on(omega, b_of_j, d, v));
+            let (b, d) = angle.dexp_coefficients();
+            *g = (rotation, rodrigues_on(omega, b, d, v));
         } else {
             *g = (so3::exp_huge(omega)?, so3::dexp(omega, v)?);
         }

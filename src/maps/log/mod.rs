@@ -19,10 +19,10 @@ mod triangular;
 mod unitary;
 
 use faer::{Mat, c64};
-use triangular::Negative;
+use triangular::{NO_DIGITS, Negative};
 
 use super::functions::LogGroup;
-use crate::dense::{Lu, RCOND_MIN, is_finite, norm1, scaled_sum};
+use crate::dense::{Lu, RCOND_MIN, is_finite, norm_frobenius, norm1, scaled_sum};
 use crate::error::{Error, NoLogarithm, StepError};
 use crate::groups::{Adjoint, AlgebraMatrix, Form, GroupMatrix, LieAlgebra, MatrixGroup};
 use crate::quadrature::GAUSS_LEGENDRE7;
@@ -74,20 +74,45 @@ impl MatrixGroup {
             x[(i, i)] -= 1.0;
         }
         let u = if norm1(x.as_ref()) <= THETA {
-            near_identity(&x)
+            self.project_algebra(near_identity(&x).as_ref())
         } else if self.is_complex() {
-            unitary::log(&g, self.is_special())?
+            self.project_algebra(unitary::log(&g, self.is_special())?.as_ref())
         } else if matches!(self.form(), Form::Identity) {
-            rotation::log(&g)?
+            self.project_algebra(rotation::log(&g)?.as_ref())
         } else {
-            self.log_by_triangle(&g)?
+            self.projected(&self.log_by_triangle(&g)?, &g)?
         };
-        let u = self.project_algebra(u.as_ref());
         if is_finite(&u) { Ok(u) } else { Err(StepError::NotFinite { what: "log(g)" }.into()) }
     }
 }
 
 impl MatrixGroup {
+    /// The logarithm u of g, projected onto 𝔤. Beside half turns the part of u that is not in 𝔤 is as large as what u has lost.
+    fn projected(&self, u: &Mat<f64>, g: &Mat<f64>) -> Result<AlgebraMatrix, Error> {
+        let found = self.project_algebra(u.as_ref());
+        let moved = norm_frobenius(&(u - &*found));
+        if moved > NO_DIGITS * norm_frobenius(u).max(1.0) + self.distance_to_group(g) {
+            let eigenvalues = g.eigenvalues().unwrap_or_default();
+            let turned = |z: &c64| z.arg().abs();
+            let nearest = eigenvalues.iter().max_by(|a, b| turned(a).total_cmp(&turned(b)));
+            let z = nearest.copied().unwrap_or(c64::ONE);
+            let (group, why) = (self.name(), NoLogarithm::NoDigits);
+            return Err(Error::NoLogarithm { group, re: z.re, im: z.im, why });
+        }
+        Ok(found)
+    }
+
+    /// How far a logarithm of g may be from 𝔤 because g is off the group.
+    fn distance_to_group(&self, g: &Mat<f64>) -> f64 {
+        let Some(m) = self.m() else { return POLAR_MAX };
+        let inverse = match self.form() {
+            Form::Bilinear { inverse, .. } => inverse.clone(),
+            _ => m.transpose().to_owned(),
+        };
+        let defect = inverse * g.transpose() * &m * g - Mat::<f64>::identity(self.n(), self.n());
+        10.0 * norm_frobenius(&defect)
+    }
+
     /// The small eigenvalues of a g that is far from 𝟙 are the rounding of the large ones.
     fn check_condition(&self, g: &Mat<f64>) -> Result<(), Error> {
         let g = GroupMatrix::new_unchecked(g.clone());

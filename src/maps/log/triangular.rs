@@ -11,7 +11,7 @@ use crate::quadrature::GAUSS_LEGENDRE7;
 const ROOTS_MAX: u32 = 1100;
 
 /// A computed logarithm whose exponential is this far from g, relative to g, has no digits.
-const NO_DIGITS: f64 = 1e-8;
+pub(super) const NO_DIGITS: f64 = 1e-8;
 
 /// Eigenvalues on the negative real axis: for them there is no principal logarithm.
 pub(super) struct Negative {

@@ -58,7 +58,7 @@ impl CoordinateMap<MatrixGroup> for Pade22 {
         Ok(Pade22At {
             quotient: Quotient::new(n),
             square: Mat::zeros(n, n),
-            schur: Box::new(AdSchur::new(n, group.ad_form())),
+            schur: Box::new(AdSchur::new(n, group.ad_coordinates())),
         })
     }
     fn psi(
@@ -96,9 +96,9 @@ impl CoordinateMap<MatrixGroup> for Pade22 {
         let Quotient { minus, product, power, .. } = quotient;
         let norm = group.norm(u);
         if norm * norm > DOUBLING_MAX {
-            schur.factor(u)?;
             let singular = SINGULAR * (norm * norm);
-            schur.solve_pade22(singular, v).map_err(|_| StepError::OutsideChart {
+            let apply = |schur: &mut AdSchur| schur.solve_pade22(singular, v);
+            group.function_of_ad(schur, u, apply)?.map_err(|_| StepError::OutsideChart {
                 map: "pade22",
                 what: "a product of two eigenvalues of u is 12",
             })?;

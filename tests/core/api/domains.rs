@@ -242,3 +242,44 @@ fn every_result_on_matrices_is_finite() {
         }
     }
 }
+
+/// Only the rounding of a determinant grows with the entries. What is not special has no logarithm, and is no start.
+#[test]
+fn determinants_are_one() {
+    let sl2 = MatrixGroup::sl(2).unwrap();
+    for (det, is_right) in [(1.0, true), (1.0 + 1e-12, true), (1.3, false), (1.001, false)] {
+        let g = mat![[1.0, 1e6], [0.0, det]];
+        assert_eq!(sl2.element(g.clone()).is_ok(), is_right, "{det}");
+        let start = sl2.check_member(&GroupMatrix::new_unchecked(g));
+        assert_eq!(start.is_ok(), is_right, "{det}");
+    }
+    let sl = MatrixGroup::sl(30).unwrap();
+    let large = Mat::<f64>::identity(30, 30) * faer::Scale(1.2);
+    assert!(sl.check_member(&GroupMatrix::new_unchecked(large)).is_err());
+    let mut rng = Pcg64::seed_from_u64(8);
+    for _ in 0..20 {
+        let u = sl.sample_algebra(&mut rng, 0.3);
+        sl.check_member(&Exp.eval(&sl, &u).unwrap()).expect("an element");
+    }
+}
+
+/// Orthogonal columns of other lengths are no singular matrix.
+#[test]
+fn the_ends_of_runs_are_starts() {
+    for (group, singular) in [(MatrixGroup::gl(2), true), (MatrixGroup::sl(2), true)] {
+        let group = group.unwrap();
+        for t in [1.0, 40.0, 80.0, 300.0] {
+            let (c, s) = (0.6, 0.8);
+            let d = [f64::exp(-t), f64::exp(t)];
+            for g in [
+                mat![[d[0], 0.0], [0.0, d[1]]],
+                mat![[c * d[0], -s * d[0]], [s * d[1], c * d[1]]],
+                mat![[c * d[0], -s * d[1]], [s * d[0], c * d[1]]],
+            ] {
+                group.check_member(&GroupMatrix::new_unchecked(g)).expect("a start");
+            }
+        }
+        let flat = GroupMatrix::new_unchecked(mat![[1.0, 2.0], [2.0, 4.0]]);
+        assert_eq!(group.check_member(&flat).is_err(), singular);
+    }
+}
