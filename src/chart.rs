@@ -69,6 +69,12 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>> Chart<'_, P, Psi> {
         self.problem.action().lambda(psi_u, self.p, q, act)
     }
 
+    /// The point λ_p(u) of the last [`pullback`](Self::pullback).
+    #[inline(always)]
+    pub fn last_point(&self) -> &PointOf<P> {
+        &self.store.y
+    }
+
     /// k ← f(t, p): the pulled-back field at u = 0, where Ψ and dΨ⁻¹ are the identity.
     #[inline(always)]
     pub fn field(&mut self, t: ScalarOf<P>, k: &mut AlgOf<P>) {

@@ -151,11 +151,18 @@ impl<P: Ambient, M: Method<P> + Symmetric> Method<P> for Composition<M> {
         let step = base.step.times(self.scheme.weights.len() as u64);
         let dense_evaluations = [Some(0), step.evaluations];
         let order = base.order.max(self.scheme.order);
-        let facts = Facts { stays_on_manifold: base.stays_on_manifold, ..Facts::of_order(order) };
+        let Facts { stays_on_manifold, short_turns, .. } = base;
+        let facts = Facts { stays_on_manifold, short_turns, ..Facts::of_order(order) };
         Facts { step, step_with_error: step, dense_evaluations, ..facts }
     }
     fn iterations(&self, work: &Self::Work) -> u64 {
         self.base.iterations(&work.base)
+    }
+    fn reused(&self, work: &Self::Work) -> u64 {
+        self.base.reused(&work.base)
+    }
+    fn forget(&self, work: &mut Self::Work) {
+        self.base.forget(&mut work.base);
     }
     fn each_memory(&self, work: &mut Self::Work, each: &mut dyn FnMut(&mut f64)) {
         self.base.each_memory(&mut work.base, each);

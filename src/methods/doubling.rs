@@ -93,6 +93,12 @@ where
     fn iterations(&self, work: &Self::Work) -> u64 {
         self.0.iterations(&work.inner)
     }
+    fn reused(&self, work: &Self::Work) -> u64 {
+        self.0.reused(&work.inner)
+    }
+    fn forget(&self, work: &mut Self::Work) {
+        self.0.forget(&mut work.inner);
+    }
     fn each_memory(&self, work: &mut Self::Work, each: &mut dyn FnMut(&mut f64)) {
         self.0.each_memory(&mut work.inner, each);
     }

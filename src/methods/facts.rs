@@ -22,6 +22,17 @@ impl StepCost {
     }
 }
 
+/// Which steps of a method are taken in two halves. The point half way is kept; another point within is a shorter step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Halves {
+    /// None.
+    Never,
+    /// Those with an error estimate. Each half has the cost of a [`step`](Facts::step).
+    ForError,
+    /// All, as by [`Doubling`](super::Doubling).
+    Always,
+}
+
 /// What is known of a method on a problem before any step.
 ///
 /// ```
@@ -49,8 +60,8 @@ pub struct Facts {
     /// The evaluations of f in [`prepare`](super::Method::prepare), and in each
     /// [`interpolate`](super::Method::interpolate).
     pub dense_evaluations: [Option<u64>; 2],
-    /// True if a step with an error estimate is two halves, each of the cost of `step`. A point within it is a shorter step.
-    pub doubled_for_error: bool,
+    /// Which steps are taken in two halves.
+    pub halves: Halves,
     /// True if a step stays on M up to rounding. Then the driver corrects the state to M from time to time
     /// ([`Action::restore`](crate::Action::restore)). The state of other methods is not corrected.
     pub stays_on_manifold: bool,
@@ -76,7 +87,7 @@ impl Facts {
             step: unknown,
             step_with_error: unknown,
             dense_evaluations: [Some(0), None],
-            doubled_for_error: false,
+            halves: Halves::Never,
             stays_on_manifold: true,
             stages_within: false,
             short_turns: false,
@@ -129,7 +140,7 @@ impl Facts {
             dense_order: self.order,
             step: self.step.times(2),
             dense_evaluations: [Some(0), self.step.evaluations],
-            doubled_for_error: false,
+            halves: Halves::Always,
             ..self.doubled_for_error()
         }
     }
@@ -142,7 +153,7 @@ impl Facts {
             short_turns: self.short_turns || has_dpsi_inv,
             error_order: Some(self.order),
             step_with_error: self.step.times(3),
-            doubled_for_error: true,
+            halves: Halves::ForError,
             ..self
         }
     }

@@ -18,7 +18,7 @@ use super::{Facts, MapCounts, Method, Step, Symmetric, Within};
 use crate::error::{Error, StepError};
 use crate::problems::FieldStore;
 use crate::problems::{Ambient, PointOf, ScalarOf};
-use crate::scalar::Real;
+use crate::scalar::{Real, larger};
 use crate::space::{Gap, LinearSpace, Metric};
 use crate::tolerance::Scales;
 
@@ -169,8 +169,11 @@ impl<P: Ambient, const S: usize> Method<P> for Gauss<S> {
                 return Err(StepError::NonFiniteRhs { stage: i + 1 });
             }
         }
+        // From 0 the changes are relative to the length of the step.
         let norm = y.size();
-        let scale = if norm == lit(0.0) { lit(1.0) } else { norm };
+        let length = || k.iter().fold(lit(0.0), |length, k| larger(length, h.abs() * k.size()));
+        let size = if norm == lit(0.0) { length() } else { norm };
+        let scale = if size == lit(0.0) { lit(1.0) } else { size };
         let mut progress = Progress::new(iterations);
         loop {
             let mut change = lit(0.0);

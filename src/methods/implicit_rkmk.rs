@@ -147,7 +147,10 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> RkmkGaussWork<P, 
                 // The change of the last stage.
                 alg.set_zero(u);
                 alg.axpy(h, old, u);
-                let of_parts = problem.action().error_ratio(alg, u, p, &mut Scales::relative());
+                let of = |y| problem.action().error_ratio(alg, u, y, &mut Scales::relative());
+                // From a part that is 0 the error is relative to where the step leads.
+                let from = of(p);
+                let of_parts = if from.is_finite() { from } else { of(around.last_point()) };
                 if progress.parts_are_done(change, of_parts / size) {
                     break;
                 }

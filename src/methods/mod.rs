@@ -50,7 +50,7 @@ pub use embedded::Embedded;
 pub(crate) use embedded::ratio_in_algebra;
 pub use energy_casimir::EnergyCasimir;
 pub use exact::ExactMotion;
-pub use facts::{Facts, StepCost};
+pub use facts::{Facts, Halves, StepCost};
 #[cfg(feature = "dense")]
 pub use fluid_midpoint::{FluidMidpoint, MidpointRule};
 pub use gauss::{GAUSS2, GAUSS4, GAUSS6, Gauss, ImplicitTableau};

@@ -51,7 +51,8 @@ impl StepControl {
         StepControl { tolerance: self.tolerance.by(rule), ..self }
     }
 
-    /// Sets the size of the first step, in either direction of time.
+    /// Sets the size of the first step, in either direction of time. It is shortened to the largest step and to the end of
+    /// the span.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] unless it is finite and positive.

@@ -11,7 +11,7 @@ use super::stats::{Cadence, RunError, Stats};
 use super::stops::{MARGIN, Stop, unit};
 use super::streak::{Reach, Run};
 use crate::error::{Error, Failure, StepError};
-use crate::methods::{Facts, MapCounts, Step, StepCost};
+use crate::methods::{Facts, Halves, MapCounts, Step, StepCost};
 
 /// The choice of the steps of a run.
 #[derive(Clone, Debug)]
@@ -180,8 +180,7 @@ impl Timeline {
     ///
     /// Where steps by error have to be short, it is known how fast the state turns, too.
     pub(super) fn expect_events(&mut self, has_events: bool, has_zeros: bool) {
-        let by_error = matches!(self.pacer, Pacer::ByError(_));
-        let asks = has_zeros || by_error && self.facts.short_turns;
+        let asks = has_zeros || self.is_by_error() && self.facts.short_turns;
         self.turns = asks.then_some(Turns { radian: f64::INFINITY, next: 0 });
         if let Pacer::ByError(chooser) = &mut self.pacer {
             chooser.has_events = has_events;
@@ -390,6 +389,9 @@ impl Timeline {
         if before <= first {
             return Ok(false);
         }
+        if self.t == self.jumped_at {
+            points.forget();
+        }
         let taken = points.steps(grid.equal(first, before));
         let reached = taken.as_ref().map_or_else(|(step, _)| *step, |()| before);
         if reached > first {
@@ -476,15 +478,23 @@ impl Timeline {
 
     /// The evaluations that prepare the dense output of a step, and those of a point.
     fn dense_evaluations(&self) -> [Option<u64>; 2] {
-        match self.is_doubled() {
-            true => [Some(0), self.facts.step.evaluations],
-            false => self.facts.dense_evaluations,
+        match self.facts.halves {
+            Halves::ForError if self.is_by_error() => [Some(0), self.facts.step.evaluations],
+            _ => self.facts.dense_evaluations,
         }
     }
 
-    /// Is each step taken in two halves, for the estimate of its error?
+    /// Is each step taken in two halves?
     fn is_doubled(&self) -> bool {
-        matches!(self.pacer, Pacer::ByError(_)) && self.facts.doubled_for_error
+        match self.facts.halves {
+            Halves::Never => false,
+            Halves::ForError => self.is_by_error(),
+            Halves::Always => true,
+        }
+    }
+
+    fn is_by_error(&self) -> bool {
+        matches!(self.pacer, Pacer::ByError(_))
     }
 
     /// Counts a point within a step.

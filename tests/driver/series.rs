@@ -231,3 +231,40 @@ fn hard_starts_on_so5() {
         }
     }
 }
+
+/// A translation whose terms do not fall with those of the rotation is in the error by the length of steps, too.
+#[test]
+fn the_translation_of_a_motion_is_in_the_error() {
+    use core::f64::consts::FRAC_PI_2;
+    use lieflow::groups::Se3;
+    use lieflow::problems::Flow;
+    use lieflow::tolerance::Rule;
+    for turn in [0.0, 1e-3, 0.1] {
+        let derivative = move |t: f64, k: usize, v: &mut (V, V)| {
+            let w = if k == 0 { V::z() * turn } else { V::zeros() };
+            let cosine = 20f64.powi(k as i32) * (20.0 * t + k as f64 * FRAC_PI_2).cos();
+            *v = (w, V::x() * cosine);
+        };
+        let flow = Flow::of_derivatives(Se3::<f64>::new(), LeftTranslation, derivative);
+        let start = (Matrix3::identity(), V::x() * 0.5);
+        let reference = Rkmk::new(DOP853, Exp);
+        let right = Solve::new(&flow, &reference, [0.0, 3.0]).steps(4000).run(start);
+        let right = right.expect("a reference").y;
+        for tolerance in [1e-6, 1e-10] {
+            for rule in [Rule::PerStep, Rule::PerLength] {
+                let method = LieSeries::new(16).expect("an order");
+                let run = Solve::new(&flow, &method, [0.0, 3.0])
+                    .tolerances(tolerance, tolerance)
+                    .rule(rule);
+                let run = run.run(start).expect("a run");
+                let away = (run.y.1 - right.1).norm();
+                let allowed = 100.0 * tolerance * run.stats.accepted as f64;
+                assert!(
+                    away < allowed,
+                    "{turn}, {rule:?}, {tolerance}: {away:e} in {} steps",
+                    run.stats.accepted
+                );
+            }
+        }
+    }
+}

@@ -1,6 +1,7 @@
 //! Parts that are small beside others: an implicit step solves each to its own rounding, and the check of a start looks at
 //! each.
 
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::support::boxed::boxed_flow;
@@ -9,8 +10,8 @@ use lieflow::catalog::MethodsByName;
 use lieflow::faer::Mat;
 use lieflow::groups::{ComplexMatrix, Power, Product, Se3, So3, Translations, Unitary};
 use lieflow::maps::{Exp, cay, dcayinv, dexp, dexpinv, exp};
-use lieflow::methods::tableau::DOPRI5;
-use lieflow::methods::{GAUSS4, GAUSS6, Gauss, Method, Rkmk, RkmkGauss};
+use lieflow::methods::tableau::{DOPRI5, RK4};
+use lieflow::methods::{Doubling, GAUSS4, GAUSS6, Gauss, Method, Rkmk, RkmkGauss};
 use lieflow::nalgebra::{Matrix3, Vector3};
 use lieflow::problems::Problem;
 use lieflow::{Error, SaveAt, Solve};
@@ -123,6 +124,39 @@ fn evaluations_of_rows_are_counted() {
         let stated = run.stats().evaluations.expect("a count") - before;
         assert_eq!(stated, CALLS.load(Ordering::Relaxed), "{name}");
     }
+}
+
+/// The point in the middle of a step of [`Doubling`] costs no call of f, in steps of one size, too.
+#[test]
+fn points_within_halves_are_counted() {
+    let called = Arc::new(AtomicU64::new(0));
+    let counter = called.clone();
+    let flow = boxed_flow(
+        So3::<f64>::new(),
+        Linear,
+        move |t: f64, x: &Vector3<f64>, v: &mut Vector3<f64>| {
+            counter.fetch_add(1, Ordering::Relaxed);
+            *v = Vector3::new(t.cos(), x.x, 1.0);
+        },
+    );
+    let calls = || called.load(Ordering::Relaxed);
+    let method = Doubling(Rkmk::new(RK4, Exp));
+    let solve = || Solve::new(&flow, &method, [0.0, 10.0]);
+    macro_rules! check {
+        ($solve:expr) => {
+            let mut run = $solve.integrator(Vector3::x()).expect("a start");
+            run.step().expect("a step");
+            let (h, mut at) = (run.t(), Vector3::zeros());
+            for (theta, each) in [(0.25, 4), (0.5, 0), (0.75, 4)] {
+                let before = (run.stats().evaluations.expect("a count"), calls());
+                run.interpolate(theta * h, &mut at).expect("a point");
+                let stated = run.stats().evaluations.expect("a count") - before.0;
+                assert_eq!([stated, calls() - before.1], [each; 2], "at {theta}");
+            }
+        };
+    }
+    check!(solve().tolerances(1e-6, 1e-6));
+    check!(solve().steps(16));
 }
 
 /// A pair of actions checks each part.

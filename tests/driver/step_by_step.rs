@@ -10,11 +10,15 @@ use lieflow::faer::Mat;
 use lieflow::groups::{AlgebraMatrix, LieAlgebra, MatrixGroup, Power, So3, Translations};
 use lieflow::maps::Exp;
 use lieflow::methods::tableau::{BS3, DOP853, DOPRI5, HEUN, RK4};
-use lieflow::methods::{AnyMethod, Doubling, GAUSS4, Rk, Rkmk, RkmkGauss};
+use lieflow::methods::{
+    AnyMethod, Composition, Doubling, Facts, GAUSS4, Method, Rk, Rkmk, RkmkGauss, STRANG, Step,
+    Symmetric,
+};
 use lieflow::nalgebra::{Matrix3, Vector3};
+use lieflow::problems::Problem;
 use lieflow::so3::exp;
 use lieflow::solve::Next;
-use lieflow::{Event, RunError, SaveAt, Solve, TimeGrid};
+use lieflow::{Error, Event, RunError, SaveAt, Solve, StepError, TimeGrid};
 
 /// ω about one axis with a pulse of 1000 for a thousandth of the time: its integral up to t.
 const PULSE: [f64; 2] = [2.0, 2.001];
@@ -418,4 +422,69 @@ fn steps_by_error_turn_little() {
         Doubling(RkmkGauss::new(GAUSS4, Exp)),
         Rkmk::new(DOPRI5, Exp)
     ];
+}
+
+type V = Vector3<f64>;
+
+/// Euler's method that keeps f at the end of a step for the next one.
+struct Keeping;
+
+impl Symmetric for Keeping {}
+
+impl<P: Problem<Group = Translations<V>, Action = LeftTranslation>> Method<P> for Keeping {
+    type Work = (Option<V>, P::Work);
+
+    fn facts(&self, _: &P) -> Facts {
+        Facts::of_order(1)
+    }
+    fn work(&self, problem: &P, _: &V) -> Result<Self::Work, Error> {
+        Ok((None, problem.work()))
+    }
+    fn forget(&self, work: &mut Self::Work) {
+        work.0 = None;
+    }
+    fn step(
+        &self,
+        problem: &P,
+        step: Step<f64>,
+        y: &mut V,
+        (kept, work): &mut Self::Work,
+    ) -> Result<(), StepError> {
+        let mut k = V::zeros();
+        let mut f = |t: f64, y: &V| {
+            problem.f(t, y, &mut k, work);
+            k
+        };
+        let first = kept.unwrap_or_else(|| f(step.t, y));
+        *y += step.h * first;
+        *kept = Some(f(step.t + step.h, y));
+        Ok(())
+    }
+}
+
+/// An observer that changes f is told to a method that keeps f, in each way to take steps.
+#[test]
+fn wrappers_and_steps_of_one_size_forget() {
+    let rate = Cell::new(1.0);
+    let group = Translations::new(V::zeros(), 3);
+    let flow = boxed_flow(group, LeftTranslation, |_, _: &V, v: &mut V| *v = V::x() * rate.get());
+    macro_rules! check {
+        ($($method:expr),*) => {$(
+            let method = $method;
+            for rows in [1, 10] {
+                rate.set(1.0);
+                let solve = Solve::new(&flow, &method, [0.0, 2.0]).steps(20).every(rows);
+                let run = solve.run_with(V::zeros(), |t, _| {
+                    if t == 1.0 {
+                        rate.set(3.0);
+                        return Next::Changed;
+                    }
+                    Next::Continue
+                });
+                let found = run.expect("a run").y.x;
+                assert!((found - 4.0).abs() < 1e-13, "{}, {rows}: {found}", stringify!($method));
+            }
+        )*};
+    }
+    check!(Keeping, Doubling(Keeping), Composition::new(Keeping, STRANG));
 }

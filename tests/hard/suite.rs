@@ -6,5 +6,6 @@ mod draw;
 mod fuzz;
 mod maps;
 mod rigid;
+mod scales;
 #[path = "../support/mod.rs"]
 mod support;

@@ -4,7 +4,7 @@ use lieflow::groups::ComplexMatrix;
 use lieflow::methods::{FluidMidpoint, MidpointRule};
 use lieflow::methods::{Method, Metric, Step};
 use lieflow::problems::{Sphere, Vortex, Zeitlin};
-use lieflow::{SaveAt, StepError, TimeGrid, integrate};
+use lieflow::{SaveAt, Solve, StepError, TimeGrid, integrate};
 
 /// Four strong vortices: ‖ω‖ is large, and a step of 0.025 contracts by 0.93 an iteration.
 fn vortices() -> (Zeitlin<Sphere>, ComplexMatrix) {
@@ -67,5 +67,32 @@ fn beyond_the_limit_a_step_fails_and_changes_nothing() {
         let mut new = method.work(&fluid, &start).expect("a workspace");
         method.step(&fluid, step, &mut of_new, &mut new).expect("a step");
         assert!(w.distance(&of_new) < 1e-15 * start.size());
+    }
+}
+
+/// Rows within steps do not change the run, and cost about as many iterations as they are points.
+#[test]
+fn rows_do_not_change_the_run() {
+    let (fluid, w) = vortices();
+    for method in [FluidMidpoint::isospectral(), FluidMidpoint::energy()] {
+        let run = |rows: u64| {
+            let times: Vec<f64> = (1..=rows).map(|k| (k as f64 - 0.3) / rows as f64).collect();
+            let solve = Solve::new(&fluid, &method, [0.0, 1.0]).steps(200).times(times);
+            let run = solve.run(w.clone()).expect("a run");
+            (run.y, run.points, run.stats.iterations)
+        };
+        let (end, _, alone) = run(0);
+        for rows in [20, 200] {
+            let (same, points, iterations) = run(rows);
+            assert!(same.distance(&end) == 0.0);
+            assert!(
+                iterations - alone < 30 * rows,
+                "{rows} rows: {alone} and {iterations} iterations"
+            );
+            // Each has the spectrum of the start: tr W² is the sum of the squares.
+            for point in points {
+                assert!((point.size() / w.size() - 1.0).abs() < 1e-13);
+            }
+        }
     }
 }

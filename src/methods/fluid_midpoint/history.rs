@@ -29,7 +29,7 @@ pub(super) struct History {
 pub(super) enum Start {
     /// The step continues from the last one.
     Warm,
-    /// A step of another size from the same point, such as to an output within a step. The history is not changed.
+    /// A step of another size from the same point, or to a point within the last one. The history is not changed.
     Aside,
     /// A new run.
     Cold,
@@ -90,6 +90,18 @@ impl History {
                 }
             }
         });
+    }
+
+    /// d ← θ times the increment of the last step, which has size h, on and below the diagonal; 0 where that is another.
+    pub(super) fn guess_within(&self, h: f64, theta: f64, d: &mut ComplexMatrix) {
+        let theta = if self.steps > 0 && self.h == h { theta } else { 0.0 };
+        let [last, ..] = &self.differences;
+        for (out, last) in d.parts_mut().into_iter().zip(last.parts()) {
+            for j in 0..out.ncols() {
+                let terms = below(last, j);
+                below_mut(out, j).iter_mut().zip(terms).for_each(|(d, x)| *d = theta * x);
+            }
+        }
     }
 
     /// Records that the step of size h ended at y with the increment d.

@@ -30,7 +30,7 @@ use crate::error::{Error, StepError};
 use crate::groups::ComplexMatrix;
 use crate::problems::{Surface, Zeitlin};
 use crate::scalar::{Ops, tally};
-use crate::space::LinearSpace;
+use crate::space::{LinearSpace, Metric};
 use history::{History, Start};
 use triangle::{below, below_mut, entries, norm, replace, sum, with_transpose};
 
@@ -274,8 +274,42 @@ impl<S: Surface> Method<Zeitlin<S>> for FluidMidpoint {
             }
             _ => work.d.clear(),
         }
-        self.iterate(fluid.surface(), h, w, work, &mut rates)?;
-        let FluidWork { d, bracket, product, history, .. } = work;
+        self.advance(fluid.surface(), h, w, work, &mut rates)?;
+        work.history.record(start, h, &work.d, w);
+        if start != Start::Aside {
+            rates.iter_mut().for_each(Rate::end_step);
+            work.rates = rates;
+        }
+        Ok(())
+    }
+    /// A shorter step, which begins with a part of the increment of the last one. The steps after it do not know of it.
+    fn interpolate(
+        &self,
+        fluid: &Zeitlin<S>,
+        Step { h, .. }: Step<f64>,
+        theta: f64,
+        from: &ComplexMatrix,
+        work: &mut FluidWork,
+        at: &mut ComplexMatrix,
+    ) -> Result<(), StepError> {
+        at.assign(from);
+        work.history.guess_within(h, theta, &mut work.d);
+        self.advance(fluid.surface(), theta * h, at, work, &mut [Rate::unknown(); 2])
+    }
+}
+
+impl FluidMidpoint {
+    /// w ← the point after a step of size h, from the guess d.
+    fn advance<S: Surface>(
+        &self,
+        surface: &S,
+        h: f64,
+        w: &mut ComplexMatrix,
+        work: &mut FluidWork,
+        rates: &mut [Rate; 2],
+    ) -> Result<(), StepError> {
+        self.iterate(surface, h, w, work, rates)?;
+        let FluidWork { d, bracket, product, .. } = work;
         let increment = match self.rule {
             MidpointRule::Isospectral => &*bracket,
             MidpointRule::Energy => &*d,
@@ -286,16 +320,9 @@ impl<S: Surface> Method<Zeitlin<S>> for FluidMidpoint {
             return Err(StepError::NotFinite { what: "the state" });
         }
         core::mem::swap(w, &mut product.x);
-        history.record(start, h, d, w);
-        if start != Start::Aside {
-            rates.iter_mut().for_each(Rate::end_step);
-            work.rates = rates;
-        }
         Ok(())
     }
-}
 
-impl FluidMidpoint {
     /// d ← its fixed point.
     fn iterate<S: Surface>(
         &self,

@@ -4,8 +4,9 @@
 //! (Ψ_j f_i if the problem gives f in the moving frame). The distance of Σ_{k≤N} Ψ_k from the group is at most of the
 //! size of the terms left out. Newton–Schulz ([`LieGroup::correct`]) moves the sum to the group, and y⁺ = Λ(Ψ, y).
 //!
-//! Order N. Preserves: the group and the invariants of the action, to rounding; energy and symmetry to the size of the
-//! terms left out. A sum that is far from the group (0.1 in gᵀMg − M) is refused with [`StepError::OutsideChart`].
+//! Order N. Preserves: the group and the invariants of the action, to rounding, as far as [`LieGroup::correct`] reaches;
+//! energy and symmetry to the size of the terms left out, and so the determinant 1 of SL(n) and SU(n), and G_M where M is
+//! neither symmetric, skew nor orthogonal, or far from a multiple of an orthogonal matrix. A sum that is far from the group (0.1 in gᵀMg − M) is refused with [`StepError::OutsideChart`].
 //! Cost: N(N−1)/2 products for Ψ, as many for the coefficients of a quadratic field, one action, and one or two steps
 //! of Newton–Schulz. A point within a step costs only the action and Newton–Schulz. The last two terms are the error
 //! estimate of an adaptive run. For the free rigid body in ℝ³ [`Taylor`](crate::methods::Taylor) is the same method on
@@ -49,6 +50,10 @@ pub trait SeriesGroup: LieGroup<Elem: Numbers> + LieAlgebra<Scalar: Into<f64>> {
     );
     /// ‖x‖, of parts without a unit.
     fn size(&self, x: &Self::Elem) -> Self::Scalar;
+    /// ‖x‖ of all parts together, as [`norm`](LieAlgebra::norm) has them. The default is for parts without a unit.
+    fn whole_size(&self, x: &Self::Elem) -> Self::Scalar {
+        self.size(x)
+    }
 }
 
 impl SeriesGroup for So3 {
@@ -115,9 +120,13 @@ impl<S: Real + Numbers + Into<f64>> SeriesGroup for Se3<S> {
         self.scale(a, &mut product);
         self.add(&product, out);
     }
-    /// ‖R‖. The terms of x fall with those of R, and their size depends on the unit of length.
+    /// ‖R‖. The size of x depends on the unit of length: the points of a step tell what its terms are.
     fn size(&self, x: &Self::Elem) -> S {
         if all_finite(&x.1) { Metric::size(&x.0) } else { S::lit(f64::NAN) }
+    }
+    fn whole_size(&self, x: &Self::Elem) -> S {
+        let [turn, shift] = [Metric::size(&x.0), Metric::size(&x.1)];
+        (turn * turn + shift * shift).sqrt()
     }
 }
 
@@ -326,14 +335,18 @@ where
         self.flow(problem, step, from, w)?;
         let group = problem.group();
         problem.action().act(group, &w.g, from, to, &mut w.act);
-        let [before, last] =
-            [self.order - 1, self.order].map(|k| Into::<f64>::into(group.size(&w.psi[k])));
+        let is_per_length = tolerance.rule() == Rule::PerLength;
+        let [before, last] = [self.order - 1, self.order].map(|k| {
+            let term = &w.psi[k];
+            let size = if is_per_length { group.whole_size(term) } else { group.size(term) };
+            Into::<f64>::into(size)
+        });
         let n = self.order as f64;
         // One of the last two may vanish where the solution is even or odd.
         let error = Real::lit(last.max(before.powf(n / (n - 1.0))));
         let length = step.h.abs() * group.norm(&w.f[0]);
         let relative = ratio_of_relative(tolerance, error, from, length);
-        if tolerance.rule() == Rule::PerLength {
+        if is_per_length {
             return Ok(relative);
         }
         // Where the last terms move a part by the size of another one, the points without them tell.

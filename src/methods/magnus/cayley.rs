@@ -10,7 +10,7 @@ use super::{GAUSS_2, GAUSS_3, MagnusWork, ROOT_15, magnus_method, sum};
 use crate::error::{Error, StepError};
 use crate::groups::{LieAlgebra, Power, Product, Se3, Se23, So3, Translations};
 use crate::maps::{Cay, CoordinateMap};
-use crate::methods::Step;
+use crate::methods::{Step, Symmetric};
 use crate::problems::{PointOf, ScalarOf};
 use crate::scalar::Real;
 use crate::so3::cross;
@@ -137,6 +137,9 @@ pub struct CayleyMagnus6;
 
 magnus_method!(CayleyMagnus4, 4, GAUSS_2, Cay, 2, 4, [TripleProduct], order_4, 1);
 magnus_method!(CayleyMagnus6, 6, GAUSS_3, Cay, 3, 9, [TripleProduct], order_6, 5);
+
+impl Symmetric for CayleyMagnus4 {}
+impl Symmetric for CayleyMagnus6 {}
 
 fn order_4<G: TripleProduct>(g: &G, h: G::Scalar, a: &[G::Alg; 2], work: &mut [G::Alg; 4]) {
     let lit = G::Scalar::lit;

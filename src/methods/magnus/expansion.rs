@@ -9,7 +9,7 @@ use super::{GAUSS_2, GAUSS_3, GAUSS_4, MagnusWork, ROOT_3, ROOT_15, V, W, magnus
 use crate::error::{Error, StepError};
 use crate::groups::LieAlgebra;
 use crate::maps::{CoordinateMap, Exp};
-use crate::methods::Step;
+use crate::methods::{Step, Symmetric};
 use crate::problems::{PointOf, ScalarOf};
 use crate::scalar::Real;
 
@@ -26,6 +26,10 @@ pub struct Magnus8;
 magnus_method!(Magnus4, 4, GAUSS_2, Exp, 2, 2, [], order_4, 1);
 magnus_method!(Magnus6, 6, GAUSS_3, Exp, 3, 7, [], order_6, 3);
 magnus_method!(Magnus8, 8, GAUSS_4, Exp, 4, 14, [], order_8, 10);
+
+impl Symmetric for Magnus4 {}
+impl Symmetric for Magnus6 {}
+impl Symmetric for Magnus8 {}
 
 fn order_4<G: LieAlgebra>(g: &G, h: G::Scalar, a: &[G::Alg; 2], [omega, x]: &mut [G::Alg; 2]) {
     g.combine(h, &[0.5, 0.5], a, omega);
@@ -50,7 +54,7 @@ fn order_6<G: LieAlgebra>(g: &G, h: G::Scalar, a: &[G::Alg; 3], work: &mut [G::A
     sum(g, [(lit(1.0), a1), (lit(1.0 / 12.0), a3), (lit(1.0 / 240.0), y)], omega);
 }
 
-/// The weights of B_k = ∫ (s − ½)^k A ds over the step, by the Gauss rule.
+/// The weights of B_k = h ∫ (s − ½)^k A ds over the step, by the Gauss rule.
 const fn moment(k: usize) -> [f64; 4] {
     let (mut x, mut y) = (W[0], W[1]);
     let mut i = 0;
@@ -64,12 +68,12 @@ const fn moment(k: usize) -> [f64; 4] {
 }
 const MOMENTS: [[f64; 4]; 4] = [moment(0), moment(1), moment(2), moment(3)];
 
-/// Ω = hB₀ + h²(Q₁ + Q₂) + h³(Q₃ + Q₄) + h⁴(Q₅ + Q₆) + h⁵Q₇; each Q at its line below.
+/// Ω = B₀ + Q₁ + Q₂ + Q₃ + Q₄ + Q₅ + Q₆ − Q₇/42; each Q at its line below.
 fn order_8<G: LieAlgebra>(g: &G, h: G::Scalar, a: &[G::Alg; 4], work: &mut [G::Alg; 14]) {
     let lit = G::Scalar::lit;
     let [omega, b0, b1, b2, b3, q1, q2, q3, q4, q5, q6, q7, x, y] = work;
     for (b, moment) in [&mut *b0, b1, b2, b3].into_iter().zip(&MOMENTS) {
-        g.combine(lit(1.0), moment, a, b);
+        g.combine(h, moment, a, b);
     }
     // Q₁ = [−38/5 B₀ + 24 B₂, B₃]
     sum(g, [(lit(-7.6), b0), (lit(24.0), b2)], x);
@@ -78,8 +82,8 @@ fn order_8<G: LieAlgebra>(g: &G, h: G::Scalar, a: &[G::Alg; 4], work: &mut [G::A
     sum(g, [(lit(12.6), b0), (lit(-84.0), b2)], x);
     sum(g, [(lit(-5.0 / 28.0), b1), (lit(1.0), b3)], y);
     g.bracket(x, y, q2);
-    // Q₃ = [19/28 B₀ − 15/7 B₂, [B₀, B₂ + h(61/588 Q₁ − 1/12 Q₂)]]
-    sum(g, [(lit(1.0), b2), (h * lit(61.0 / 588.0), q1), (h * lit(-1.0 / 12.0), q2)], x);
+    // Q₃ = [19/28 B₀ − 15/7 B₂, [B₀, B₂ + 61/588 Q₁ − 1/12 Q₂]]
+    sum(g, [(lit(1.0), b2), (lit(61.0 / 588.0), q1), (lit(-1.0 / 12.0), q2)], x);
     g.bracket(b0, x, y);
     sum(g, [(lit(19.0 / 28.0), b0), (lit(-15.0 / 7.0), b2)], x);
     g.bracket(x, y, q3);
@@ -90,15 +94,15 @@ fn order_8<G: LieAlgebra>(g: &G, h: G::Scalar, a: &[G::Alg; 4], work: &mut [G::A
     g.bracket(b2, q1, y);
     sum(g, [(lit(-6025.0 / 4116.0), b0), (lit(2875.0 / 343.0), b2)], x);
     g.bracket(x, y, q5);
-    // Q₆ = [B₃, 20/7 (Q₃ + Q₄) + 820/189 h Q₅]
-    sum(g, [(lit(20.0 / 7.0), q3), (lit(20.0 / 7.0), q4), (h * lit(820.0 / 189.0), q5)], x);
+    // Q₆ = [B₃, 20/7 (Q₃ + Q₄) + 820/189 Q₅]
+    sum(g, [(lit(20.0 / 7.0), q3), (lit(20.0 / 7.0), q4), (lit(820.0 / 189.0), q5)], x);
     g.bracket(b3, x, q6);
-    // Q₇ = −1/42 [B₀, [B₀, Q₃ − Q₄/3 + h Q₅]]
-    sum(g, [(lit(1.0), q3), (lit(-1.0 / 3.0), q4), (h, q5)], x);
+    // Q₇ = [B₀, [B₀, Q₃ − Q₄/3 + Q₅]]
+    sum(g, [(lit(1.0), q3), (lit(-1.0 / 3.0), q4), (lit(1.0), q5)], x);
     g.bracket(b0, x, y);
     g.bracket(b0, y, q7);
-    let (h2, h3) = (h * h, h * h * h);
-    let (h4, h5) = (h2 * h2, h2 * h3 * lit(-1.0 / 42.0));
-    let terms = [(h, &*b0), (h2, q1), (h2, q2), (h3, q3), (h3, q4), (h4, q5), (h4, q6), (h5, q7)];
+    let one = lit(1.0);
+    let terms = [(one, &*b0), (one, q1), (one, q2), (one, q3), (one, q4), (one, q5), (one, q6)];
     sum(g, terms, omega);
+    g.axpy(lit(-1.0 / 42.0), q7, omega);
 }

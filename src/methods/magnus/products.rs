@@ -8,7 +8,7 @@ use super::{GAUSS_2, GAUSS_3, GAUSS_4, MagnusWork, ROOT_3, ROOT_15, V, W};
 use crate::error::{Error, StepError};
 use crate::groups::LieAlgebra;
 use crate::maps::{CoordinateMap, Exp};
-use crate::methods::{Facts, MapCounts, Method, Step};
+use crate::methods::{Facts, MapCounts, Method, Step, Symmetric};
 use crate::problems::{LinearField, PointOf, ScalarOf};
 
 /// The coefficients of a commutator-free Magnus method: S nodes, F factors.
@@ -142,6 +142,8 @@ const fn by_moments(f: [f64; 4]) -> [f64; 4] {
 /// (2011).
 #[derive(Clone, Copy, Debug)]
 pub struct CfMagnus<const S: usize, const F: usize>(pub CfMagnusTableau<S, F>);
+
+impl<const S: usize, const F: usize> Symmetric for CfMagnus<S, F> {}
 
 impl<P: LinearField, const S: usize, const F: usize> Method<P> for CfMagnus<S, F>
 where

@@ -136,7 +136,7 @@ where
         Facts::of_order(N)
             .cost(Some(N as u64), MapCounts::default())
             .estimate("", Some(N - 1))
-            .dense(N, N)
+            .dense(N, 0)
     }
     fn work(&self, _: &P, _: &PointOf<P>) -> Result<Self::Work, Error> {
         Ok(TaylorWork { terms: [[Real::lit(0.0); 4]; N], of: None })
