@@ -2,7 +2,6 @@
 
 use std::path::{Path, PathBuf};
 
-use lieflow::SaveAt;
 use lieflow_model::problem::Plan;
 use lieflow_model::reader::Refusal;
 use lieflow_model::scene::Scene;
@@ -91,14 +90,9 @@ pub(super) fn foresee_room(
     let estimate = Estimate::new(rows, columns, schema);
     let room = free(folder).map(|free| free.saturating_add(replaced(folder)));
     estimate.check(folder, most, room).map_err(|message| {
-        let key = match scene.save {
-            SaveAt::Every(_) => "every",
-            SaveAt::Interval(_) => "interval",
-            _ => "times",
-        };
         let help = "write fewer rows (a larger `every` or `interval`, or a smaller `count`, in \
                     [output]) or fewer `quantities`";
-        let refusal = Refusal { help: Some(help.into()), ..Refusal::at(key, message) };
+        let refusal = Refusal { help: Some(help.into()), ..Refusal::at(scene.rows_key(), message) };
         scene.refuse("output", refusal)
     })?;
     let is_much = estimate.bytes() > MUCH;

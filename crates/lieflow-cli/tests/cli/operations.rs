@@ -102,19 +102,19 @@ fn classical_steps_on_vectors_take_what_their_fields_take() {
             "state",
             rk4(2 * (2 + cross) + 1, 7),
         ),
-        // With damping: −c·ω, turned, and added to no torque.
+        // With damping: −c·ω, turned.
         (
             "kind = \"driven-body\"\ninertia = [1.0, 2.0, 3.0]\nomega_body = [1.0, 0.2, 0.0]\n\
              damping = 0.1",
             "axis",
-            rk4(15 + 3 + 3 * cross + 3 + 15 + 3, 12),
+            rk4(15 + 3 + 3 * cross + 3 + 15, 12),
         ),
         // As formulas.
         (
             "kind = \"driven-body\"\ninertia = [1.0, 2.0, 3.0]\nomega_body = [1.0, 0.2, 0.0]\n\
              torque = [\"-0.1*w1\", \"-0.1*w2\", \"-0.1*w3\"]",
             "axis",
-            rk4(15 + 3 + 3 * cross + 3 + 15 + 3, 12),
+            rk4(15 + 3 + 3 * cross + 3 + 15, 12),
         ),
     ] {
         let found =

@@ -141,6 +141,12 @@ impl Formula {
         self.tape.uses(variable)
     }
 
+    /// The formula 0, which may name the samples. None without samples.
+    pub(crate) fn of_samples(names: &Names) -> Option<Formula> {
+        names.table()?;
+        Formula::read("samples", "0", names).ok()
+    }
+
     /// Other names, the first of them `t`, and the columns of the samples that this formula may name.
     pub fn add_samples(&self, names: Names) -> Names {
         names.with_table(self.table.clone())
@@ -149,6 +155,11 @@ impl Formula {
     /// The samples whose columns it may name.
     pub fn samples(&self) -> Option<&Samples> {
         self.table.as_ref().map(|table| &table.samples)
+    }
+
+    /// The names of the columns of the samples.
+    pub fn sample_names(&self) -> &[String] {
+        self.table.as_ref().map_or(&[], |table| &table.columns)
     }
 
     /// The length of its list of operations.

@@ -17,7 +17,7 @@ use super::functions::{CALLED, Called, Function, Operator, angle_unit};
 use super::names::{Meaning, Names, continues_name, starts_name};
 use super::tape::{Builder, LENGTH_MAX, Tape};
 use super::value::Value;
-use crate::reader::help_for;
+use crate::reader::{help_for, is_in_range};
 
 /// Names of units that people write after a number.
 const UNITS: [&str; 38] = [
@@ -316,7 +316,7 @@ impl Parser<'_> {
             digits += &self.take_while(|c| c.is_ascii_digit());
         }
         match digits.parse::<f64>() {
-            Ok(x) if x.is_finite() => Ok(self.build.number(x)),
+            Ok(x) if is_in_range(x, &digits) => Ok(self.build.number(x)),
             Ok(_) => Err(self.of_form(&format!("the number {digits} is out of range"), start)),
             Err(_) => Err(self.of_form(&format!("`{digits}` is not a number"), start)),
         }

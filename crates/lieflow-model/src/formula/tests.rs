@@ -339,6 +339,7 @@ fn what_is_wrong_is_said_with_its_place() {
             Some("sin takes a number"),
         ),
         ("1e999", "the number 1e999 is out of range at character 1", None),
+        ("x + 1.5e-400", "the number 1.5e-400 is out of range at character 5", None),
         ("1.2.3", "`1.2.3` is not a number at character 1", None),
         (
             "-0,1*x",

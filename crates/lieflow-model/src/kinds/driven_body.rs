@@ -117,43 +117,43 @@ impl Torques {
     }
 }
 
-impl<S: Real + Into<f64>> Torque<S> for Torques {
-    fn in_space(&self, at: &BodyMotion<S>) -> Vector3<S> {
-        let at = &self.in_scene(at);
+impl Torques {
+    /// The sum of the torques that are stated in space, and of those that are stated in the body, along the axes of the
+    /// scene. None where no torque is stated in a frame.
+    fn stated<S: Real + Into<f64>>(&self, at: &BodyMotion<S>) -> [Option<Vector3<S>>; 2] {
         let lit = |x: Vector3<f64>| x.map(S::lit);
         let g = &at.attitude;
         let damped = |c: f64| at.omega_body.map(|w| S::lit(-c) * w);
-        let mut torque = lit(Vector3::zeros());
-        let mut add = |other: Vector3<S>| {
-            for i in 0..3 {
-                torque[i] += other[i];
-            }
-        };
-        if let Some(weight) = self.weight {
+        let weight = self.weight.map(|weight| {
             let mut down = lit(weight);
             So3::new().apply(g, &lit(weight), &mut down);
-            add(Vector3::new(-down[1], down[0], S::lit(0.0)));
-        }
-        if let Some(thruster) = self.thruster {
-            add(BodyTorque(|_: &BodyMotion<S>| lit(thruster)).in_space(at));
-        }
-        if let Some(damping) = self.damping {
-            add(BodyTorque(|_: &BodyMotion<S>| damped(damping)).in_space(at));
-        }
-        if let Some([stiffness, damping]) = self.control {
+            Vector3::new(-down[1], down[0], S::lit(0.0))
+        });
+        let control = self.control.map(|[stiffness, damping]| {
             let half = |i: usize, j: usize| S::lit(0.5) * (g[(i, j)] - g[(j, i)]);
             let away = Vector3::new(half(2, 1), half(0, 2), half(1, 0));
             let (k, slow) = (S::lit(-stiffness), damped(damping));
-            let law = |_: &BodyMotion<S>| Vector3::from_fn(|i, _| k * away[i] + slow[i]);
-            add(BodyTorque(law).in_space(at));
-        }
-        if let Some(formulas) = &self.in_the_body {
-            add(BodyTorque(|at: &BodyMotion<S>| evaluated(formulas, at)).in_space(at));
-        }
-        if let Some(formulas) = &self.in_space {
-            add(evaluated(formulas, at));
-        }
-        torque
+            Vector3::from_fn(|i, _| k * away[i] + slow[i])
+        });
+        let value = |formulas: &Option<Formulas>| Some(evaluated(formulas.as_ref()?, at));
+        let in_the_body =
+            [self.thruster.map(lit), self.damping.map(damped), control, value(&self.in_the_body)];
+        let in_space = [weight, value(&self.in_space)];
+        [sum(&in_space), sum(&in_the_body)]
+    }
+}
+
+/// The sum of the torques that are there.
+fn sum<S: Real>(torques: &[Option<Vector3<S>>]) -> Option<Vector3<S>> {
+    torques.iter().flatten().copied().reduce(|a, b| Vector3::from_fn(|i, _| a[i] + b[i]))
+}
+
+impl<S: Real + Into<f64>> Torque<S> for Torques {
+    fn in_space(&self, at: &BodyMotion<S>) -> Vector3<S> {
+        let at = &self.in_scene(at);
+        let [in_space, in_the_body] = self.stated(at);
+        let turned = in_the_body.map(|torque| BodyTorque(|_: &BodyMotion<S>| torque).in_space(at));
+        sum(&[in_space, turned]).unwrap_or_else(|| Vector3::from_element(S::lit(0.0)))
     }
 }
 
@@ -164,6 +164,8 @@ struct Driven {
     body: TorqueBody<Torques>,
     torques: Torques,
     start: Point,
+    /// A formula of the samples, where no torque is one.
+    samples: Option<Formula>,
 }
 
 type Q = Quantity<Driven>;
@@ -179,7 +181,7 @@ fn read(mut keys: Keys) -> Result<Forms, ReadError> {
     let in_the_body = formulas("torque", torque);
     let in_space = formulas("torque_space", torque_space);
     let names = names.and_then(Names::checked);
-    let (spec, _, weight, thruster, damping, control, in_the_body, in_space) =
+    let (spec, names, weight, thruster, damping, control, in_the_body, in_space) =
         all!(spec, names, weight, thruster, damping, control, in_the_body, in_space)?;
     let torques = Torques {
         axes: spec.axes,
@@ -192,7 +194,8 @@ fn read(mut keys: Keys) -> Result<Forms, ReadError> {
     };
     let body = TorqueBody::new(spec.inertia, torques.clone())?;
     let start = (spec.attitude, spec.momentum_space());
-    let forms = Forms::of(Driven { spec, body, torques: torques.clone(), start });
+    let samples = Formula::of_samples(&names);
+    let forms = Forms::of(Driven { spec, body, torques: torques.clone(), start, samples });
     Ok(match torques.are_none() {
         true => forms,
         false => forms.written(&["attitude", "momentum_space", "omega_body", "torque"]),
@@ -231,8 +234,11 @@ impl AsBody for Driven {
 impl Driven {
     /// The sum of the torques in the body, along the axes of the scene.
     fn torque(&self, t: f64, y: &Point) -> Vector3<f64> {
-        let in_space = self.torques.in_space(&self.body.motion(t, y));
-        self.in_scene(y.0.tr_mul(&in_space))
+        let at = &self.torques.in_scene(&self.body.motion(t, y));
+        // What is stated in the body does not go through space: a small component has its own digits.
+        let [in_space, in_the_body] = self.torques.stated(at);
+        let turned = in_space.map(|torque| at.attitude.tr_mul(&torque));
+        sum(&[turned, in_the_body]).unwrap_or_default()
     }
     /// A law of the motion under gravity alone, or under no torque.
     fn undriven(&self, law: Law) -> Option<Law> {
@@ -309,7 +315,7 @@ impl System for Driven {
         without_value(self.torques.formulas(), &at)
     }
     fn formula(&self) -> Option<&Formula> {
-        self.torques.formulas().next()
+        self.torques.formulas().next().or(self.samples.as_ref())
     }
     /// Without a torque: that of the free body.
     fn exact(&self, [t0, t1]: [f64; 2]) -> Option<Result<PointOf<Self>, Error>> {

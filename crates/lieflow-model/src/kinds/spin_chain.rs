@@ -55,6 +55,8 @@ struct Chain {
     of: Of,
     damping: f64,
     start: Box<[Vector3<f64>]>,
+    /// A formula of the samples.
+    samples: Option<Formula>,
 }
 
 /// What couples the spins.
@@ -125,7 +127,7 @@ fn read(mut keys: Keys) -> Result<Forms, ReadError> {
             damping.checked("damping", "a finite number ≥ 0", |x| x >= 0.0)
         }),
     );
-    let ((chain, start), _, exchange, dm, anisotropy, field, ring, damping) =
+    let ((chain, start), names, exchange, dm, anisotropy, field, ring, damping) =
         all!(spins, names, exchange, dm, anisotropy, field, ring, damping)?;
     let chain = chain.with_damping(damping)?;
     let ring = ring != Some(false);
@@ -138,7 +140,7 @@ fn read(mut keys: Keys) -> Result<Forms, ReadError> {
         }
         None => Of::Formulas(stated.into()),
     };
-    Ok(Forms::of(Chain { of, damping, start }))
+    Ok(Forms::of(Chain { of, damping, start, samples: Formula::of_samples(&names) }))
 }
 
 /// The variables of formulas.
@@ -174,6 +176,13 @@ fn read_three(
     };
     let number = |x: f64| Formula::read(key, &format!("{x:?}"), names);
     let all = |formula: Formula| [formula.clone(), formula.clone(), formula];
+    // A formula whose value is a vector is three, too.
+    if let Some(texts @ Texts::One(_)) = stated
+        && let Ok(three) = texts.read(key, 3, names)
+        && let Ok(three) = three.try_into()
+    {
+        return Ok(three);
+    }
     match (stated, alone) {
         (None, Alone::All(x)) => number(x).map(all),
         (None, _) => number(0.0).map(all),
@@ -382,7 +391,7 @@ impl System for Chain {
     }
     fn formula(&self) -> Option<&Formula> {
         match &self.of {
-            Of::Numbers(..) => None,
+            Of::Numbers(..) => self.samples.as_ref(),
             Of::Formulas(stated) => stated.each().next(),
         }
     }

@@ -16,5 +16,5 @@ pub(crate) use refusal::amount;
 pub use refusal::{Either, KeyPath, Refusal, at_most_one, exactly_one, one_of};
 pub use suggest::{help_for, is_known, suggest};
 pub use tree::{Mistakes, Tree};
-pub(crate) use value::keys_of;
 pub use value::{Entry, Is, Keys, Value, Written};
+pub(crate) use value::{is_in_range, keys_of};

@@ -97,6 +97,12 @@ impl Value {
     }
 }
 
+/// Is the number x, which is written by these digits, neither infinite nor 0 by underflow?
+pub(crate) fn is_in_range(x: f64, digits: &str) -> bool {
+    let mut significant = digits.chars().take_while(|c| !matches!(c, 'e' | 'E'));
+    x.is_finite() && (x != 0.0 || !significant.any(|c| matches!(c, '1'..='9')))
+}
+
 /// The value that is written in TOML.
 impl From<Spanned<DeValue<'_>>> for Value {
     fn from(value: Spanned<DeValue<'_>>) -> Self {
@@ -108,10 +114,9 @@ impl From<Spanned<DeValue<'_>>> for Value {
                 value: i128::from_str_radix(n.as_str(), n.radix()).ok(),
             }),
             DeValue::Float(x) => {
-                // Digits that are infinite are out of range.
-                let is_word = x.as_str().ends_with("inf");
+                let is_word = x.as_str().ends_with(|c: char| c.is_alphabetic());
                 let parsed = x.as_str().parse().ok();
-                let value = parsed.filter(|x: &f64| !x.is_infinite() || is_word);
+                let value = parsed.filter(|&value| is_word || is_in_range(value, x.as_str()));
                 Is::Number(Written { text: x.to_string(), value })
             }
             DeValue::String(text) => Is::Text(text.into_owned()),

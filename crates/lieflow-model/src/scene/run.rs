@@ -193,7 +193,7 @@ impl Scene {
         // A folder may have this name.
         let is_name = !stem.trim_matches('.').is_empty();
         let name = if is_name { stem.into_owned() } else { "scene".into() };
-        let fingerprint = fingerprint(&document.says(), problem.samples());
+        let fingerprint = fingerprint(&document.says(), &problem);
         let mut scene = Scene {
             title: title.map_or(name.clone(), |title| title.replace(char::is_control, " ")),
             name,
@@ -345,6 +345,15 @@ impl Scene {
         }
     }
 
+    /// The key that says where rows are written.
+    pub fn rows_key(&self) -> &'static str {
+        let document = Document::parse(&self.source, &self.text, &self.file);
+        let output = document.as_ref().ok().and_then(|document| document.section("output").ok());
+        let keys = ["every", "times", "count", "interval"].into_iter();
+        let mut given = keys.filter(|key| output.is_some_and(|output| output.get(key).is_some()));
+        given.next().unwrap_or("interval")
+    }
+
     /// What a run is asked for, on rows of this schema.
     ///
     /// # Errors
@@ -436,11 +445,12 @@ impl Scene {
 }
 
 /// A hash of what the scene states and of its samples: the same on every machine.
-fn fingerprint(stated: &str, samples: Option<&Samples>) -> u64 {
+fn fingerprint(stated: &str, problem: &Problem) -> u64 {
     let mut hasher = FnvHasher::default();
     hasher.write(stated.as_bytes());
-    if let Some(samples) = samples {
-        samples.hash(&mut hasher);
+    if let Some(formula) = problem.formula() {
+        formula.samples().hash(&mut hasher);
+        formula.sample_names().hash(&mut hasher);
     }
     hasher.finish()
 }

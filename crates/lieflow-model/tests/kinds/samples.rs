@@ -273,3 +273,60 @@ fn other_numbers_are_another_scene() {
         "a run of the one is not resumed as the other"
     );
 }
+
+/// Another name of a column is another scene.
+#[test]
+fn other_names_are_another_scene() {
+    let numbers = "0,1,2\n5,0,1\n10,2,3\n";
+    let fingerprint = |names: &str| {
+        let folder = Folder::with(format!("{names}\n{numbers}"));
+        let problem = body("[\"u\", \"0\", \"v\"]", "");
+        folder.scene(&problem, "t_span = [0, 1]\ndt = 0.1", "axis").unwrap().fingerprint
+    };
+    assert_eq!(fingerprint("t,u,v"), fingerprint("t, u, v"));
+    assert_ne!(fingerprint("t,u,v"), fingerprint("t,v,u"));
+}
+
+/// Events and columns of formulas know the samples where no formula of the problem needs them.
+#[test]
+fn samples_are_known_beside_numbers() {
+    let folder = Folder::with("t,u\n0,1\n3,2\n");
+    let body = "kind = \"driven-body\"\ninertia = [1, 2, 3]\nomega_body = [0.1, 0, 1]\nthruster = [0, 0, 0.1]";
+    let chain = "kind = \"spin-chain\"\nspins = [[1, 0, 0], [0, 0, 1]]\nexchange = 1";
+    for (problem, quantity) in [(body, "axis"), (chain, "spins")] {
+        let problem = format!("{problem}\nsamples = \"data.csv\"");
+        let time = "t_span = [0, 3]\ndt = 0.1\n[[events]]\nname = \"e\"\nwhen = \"u - 1.1\"";
+        let scene = folder.scene(&problem, time, quantity);
+        assert_eq!(scene.unwrap_or_else(|error| panic!("{error}")).events.len(), 1);
+        // They have to cover the span, as in every kind.
+        let late = folder.scene(&problem, "t_span = [0, 4]\ndt = 0.1", quantity).unwrap_err();
+        assert!(late.to_string().contains("the samples span 0 to 3"), "{late}");
+    }
+}
+
+/// A drive has no formula: samples beside it would do nothing.
+#[test]
+fn samples_beside_a_drive_are_refused() {
+    let folder = Folder::with("t,u\n0,1\n3,2\n");
+    for (kind, start, quantity) in [
+        ("schrodinger", "amplitudes = [1, 0]", "populations"),
+        ("density-matrix", "density = [[1, 0], [0, 0]]", "populations"),
+    ] {
+        let drive = format!(
+            "kind = \"{kind}\"\nenergies = [0, 1]\ncoupling = [[0, 0.3], [0.3, 0]]\nfrequency = 1\n{start}"
+        );
+        let scene = |more: &str| {
+            folder.scene(&format!("{drive}\n{more}"), "t_span = [0, 3]\ndt = 0.1", quantity)
+        };
+        scene("").unwrap_or_else(|error| panic!("{kind}: {error}"));
+        scene("let = { twice = \"2*t\" }").unwrap_or_else(|error| panic!("{kind}: {error}"));
+        for (more, words) in [
+            ("samples = \"data.csv\"", "`samples` is for the formulas of `hamiltonian`"),
+            ("interpolation = \"cubic\"", "`interpolation` is for the formulas of `hamiltonian`"),
+            ("let = { twice = \"foo((\" }", "foo"),
+        ] {
+            let refused = scene(more).expect_err(more).to_string();
+            assert!(refused.contains(words), "{kind}: {refused}");
+        }
+    }
+}

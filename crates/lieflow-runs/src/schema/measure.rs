@@ -26,10 +26,15 @@ impl Measure {
         match self {
             Measure::Length => apart(1.0),
             // ‖A − B‖ = √8 sin(angle/2), and |p − q| = 2 sin(angle/4).
-            Measure::Rotation => 2.0 * (apart(1.0) / 8.0_f64.sqrt()).min(1.0).asin(),
-            Measure::Quaternion => 4.0 * (apart(1.0).min(apart(-1.0)) / 2.0).min(1.0).asin(),
+            Measure::Rotation => 2.0 * asin(apart(1.0) / 8.0_f64.sqrt()),
+            Measure::Quaternion => 4.0 * asin(apart(1.0).min(apart(-1.0)) / 2.0),
         }
     }
+}
+
+/// The angle with this sine, which rounding may have put above 1. NaN stays.
+fn asin(sine: f64) -> f64 {
+    if sine > 1.0 { core::f64::consts::FRAC_PI_2 } else { sine.asin() }
 }
 
 /// The length of a vector.

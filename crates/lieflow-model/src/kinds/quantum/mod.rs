@@ -138,8 +138,21 @@ impl Hamiltonian {
                 (n, stated.map(|(_, _, stated)| Of::Formulas(stated.into())))
             }
             None => {
+                let unused = [
+                    ("samples", given(&samples.samples)),
+                    ("interpolation", given(&samples.interpolation)),
+                ];
+                let unused = unused.into_iter().find(|(_, given)| *given).map(|(key, _)| {
+                    let message =
+                        format!("`{key}` is for the formulas of `hamiltonian`: this one has none");
+                    ReadError::from(Refusal::at(key, message))
+                });
+                // The named formulas are those of events alone.
+                let names = formulas.names(PARTS[0], ["t"], SampleKeys::none());
+                let (names, used) = (names.and_then(Names::checked), unused.map_or(Ok(()), Err));
                 let (n, drive) = Drive::read(keys);
-                (n, drive.map(Of::Drive))
+                let of = all!(names, used, drive).map(|(_, _, drive)| Of::Drive(drive));
+                (n, of)
             }
         };
         let size = n.clone();
