@@ -352,3 +352,25 @@ def test_times_of_samples_are_named():
         with pytest.raises(lf.ArgumentError, match="expected a time within the samples, from 0 to 1") as caught:
             samples(t)
         assert caught.value.argument == name
+
+
+@pytest.mark.parametrize("group", ["S3", "SU(2)"])
+def test_a_rotation_is_a_quaternion_where_points_are(group):
+    transform = pytest.importorskip("scipy.spatial.transform")
+    start = transform.Rotation.from_rotvec([0.3, -0.2, 0.5])
+    q = np.roll(start.as_quat(), 1)
+    half = transform.Rotation.from_rotvec([0, 0, np.pi / 2])
+
+    def rate(t, y):
+        return [0.1, t, 0.2]
+
+    def run(y0, change):
+        event = lf.Event(lambda t, y: t - 0.5, change=change)
+        return lf.solve_ivp(rate, (0, 1), y0, group=group, frame="body", events=event)
+
+    of_rotation = run(start, lambda t, y: half)
+    assert np.array_equal(of_rotation.y_end, run(q, lambda t, y: np.roll(half.as_quat(), 1)).y_end)
+    stepper = lf.Integrator(rate, None, (0, 1), start, group=group, frame="body")
+    assert np.array_equal(stepper.y, q)
+    stepper.y = half
+    assert np.array_equal(stepper.y, np.roll(half.as_quat(), 1))

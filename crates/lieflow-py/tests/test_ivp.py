@@ -15,7 +15,7 @@ from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
 import lieflow as lf
-from lieflow._ivp import settings_of
+from lieflow._settings import settings_of
 from lieflow._second_run import finer
 
 ROTATION = {"group": "SO(3)", "frame": "body"}

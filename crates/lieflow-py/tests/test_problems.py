@@ -585,3 +585,15 @@ def test_quantities_may_be_spelled_as_in_scenes():
     assert p.exact(1.0, "euler_ZYX").euler_zyx.shape == (3,)
     with pytest.raises(lf.ArgumentError, match="^quantities: "):
         p.asked("foo")
+
+
+def test_each_component_of_a_torque_has_its_own_digits():
+    keys = {"inertia": [1, 2, 3], "omega_body": [0.3, 1, 0.2], "euler": {"zyx": [0.4, 0.3, 0.2]}}
+    by_formulas = lf.DrivenBody(**keys, torque=["1e6*sin(t)", "1e-9", "0"])
+    run = lf.solve_ivp(by_formulas, (0, 0.01), quantities="torque")
+    assert (run.torque[:, 1] == 1e-9).all() and (run.torque[:, 2] == 0).all()
+    # Those in space and in the body are added in the body.
+    both = lf.DrivenBody(**keys, thruster=[0, 1, 0], damping=0.5, torque_space=["0", "0", "2"])
+    run = lf.solve_ivp(both, (0, 1), quantities=["torque", "attitude", "omega_body"])
+    right = run.attitude.transpose(0, 2, 1) @ [0, 0, 2] + [0, 1, 0] - 0.5 * run.omega_body
+    assert np.abs(run.torque - right).max() < 1e-15

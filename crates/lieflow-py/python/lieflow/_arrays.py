@@ -81,6 +81,11 @@ def _numbers(x: Any) -> Array | None:
     return array
 
 
+def quaternions(rotation: Any) -> Any:
+    """Return the quaternions of SciPy's Rotation, the real part first."""
+    return np.roll(rotation.as_quat(), 1, axis=-1)
+
+
 def real(name: str, x: Any) -> Array:
     """Return x as an array of float64 in C order. Raise TypeError if it has other things than real numbers."""
     array = _numbers(x)

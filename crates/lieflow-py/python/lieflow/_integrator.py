@@ -12,10 +12,11 @@ from numpy.typing import ArrayLike
 from ._arrays import Array, name_of, number, real
 from ._errors import ArgumentError
 from ._fields import Parts
-from ._ivp import METHOD, Ready, args_of, check_of_problem, check_stops, settings_of, span_of
+from ._ivp import METHOD, Ready, check_of_problem
 from ._problems import Problem
+from ._settings import args_of, check_stops, settings_of, span_of
 from ._types import Args, Flag, Matrices, Real, Span
-from ._unitary import ComplexPoints
+from ._unitary import ComplexPoints, of_rotation
 
 __all__ = ["Integrator"]
 
@@ -79,6 +80,7 @@ class Integrator:
         )
         self._split: Any = None
         self._join: Parts | ComplexPoints | None = None
+        self._group = group
         check_stops(settings, span)
         if isinstance(problem, Problem):
             check_of_problem(group, frame, action, linear)
@@ -132,7 +134,7 @@ class Integrator:
         if self._join is not None:
             flat = self._join.join("y", value, True).ravel()
         else:
-            array, shape = real("y", value), self._run.row().shape
+            array, shape = real("y", of_rotation(self._group, value)), self._run.row().shape
             if array.shape != shape:
                 raise ArgumentError("y", f"shape {array.shape}", f"shape {shape}")
             flat = array.ravel()

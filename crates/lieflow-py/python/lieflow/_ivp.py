@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from time import thread_time
 from typing import Any
@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _lieflow
-from ._arrays import MEMBERSHIP, Array, finite, kept, name_of, number, real, value, what, whole
+from ._arrays import MEMBERSHIP, Array, finite, kept, name_of, real, value
 from ._errors import ArgumentError, RunError
 from ._events import Event, changes_of, events_of, for_second_run, texts_of
 from ._fields import CFunction, Field, Parts, Quantities, Samples, State, address
@@ -20,121 +20,15 @@ from ._groups import Group
 from ._problems import Problem
 from ._result import Layout, OdeSolution, Result, warn_of_events
 from ._second_run import Repeated, beyond, changed, second
+from ._settings import args_of, check_stops, settings_of, span_of, times_of
 from ._types import Args, Flag, Matrices, Real, Span, Whole
-from ._unitary import ComplexPoints, ComplexState, Unitary, is_su2, is_unitary_name
+from ._unitary import ComplexPoints, ComplexState, Unitary, is_su2, is_unitary_name, of_rotation
 
 __all__ = ["solve_ivp"]
 
 
 #: The method if none is given.
 METHOD = "rkmk dop853 exp"
-
-
-def _positive(name: str, x: Any) -> float | None:
-    if x is None:
-        return None
-    if isinstance(x, (bool, np.bool_)):
-        raise TypeError(f"{name}: {x!r}, expected a number")
-    found = number(name, x)
-    if not found > 0:
-        raise ArgumentError(name, repr(x), "a number > 0")
-    return found
-
-
-def _count(name: str, x: Any) -> int | None:
-    return None if x is None else whole(name, x, 1)
-
-
-def _flag(name: str, x: Any) -> bool:
-    if not isinstance(x, (bool, np.bool_)):
-        raise TypeError(f"{name}: {x!r}, expected True or False")
-    return bool(x)
-
-
-def span_of(t_span: Any) -> tuple[float, float]:
-    """Return the two times of an argument."""
-    if type(t_span) is tuple and len(t_span) == 2 and type(t_span[0]) in (int, float) and type(t_span[1]) in (int, float):
-        span: Any = t_span
-    else:
-        if isinstance(t_span, (tuple, list)) and any(isinstance(t, (str, bytes)) for t in t_span):
-            raise TypeError(f"t_span: {t_span!r}, expected two numbers")
-        span = real("t_span", t_span)
-        if span.shape != (2,):
-            raise ArgumentError("t_span", f"shape {span.shape}", "two times")
-    try:
-        start, end = float(span[0]), float(span[1])
-    except OverflowError:
-        raise TypeError(f"t_span: {what(span)}, expected two numbers") from None
-    if end != end or start - start != 0.0:
-        raise ArgumentError("t_span", repr(t_span), "two times, the first one finite")
-    return start, end
-
-
-def args_of(args: Any) -> tuple[Any, ...]:
-    """Return the arguments of f as a tuple."""
-    if isinstance(args, (str, bytes)) or not isinstance(args, Iterable):
-        raise TypeError(f"args: {what(args)}, expected a tuple, as in args=(2.0,)")
-    return tuple(args)
-
-
-def times_of(t_eval: Any, span: tuple[float, float]) -> Array | None:
-    """Return the times of the output, which lie in the span."""
-    if t_eval is None:
-        return None
-    times = real("t_eval", t_eval)
-    if times.ndim != 1:
-        raise ArgumentError("t_eval", f"shape {times.shape}", "a list of times")
-    low, high = min(span), max(span)
-    if len(times) and not (times.min() >= low and times.max() <= high):
-        i = int(np.argmax(~((times >= low) & (times <= high))))
-        raise ArgumentError(f"t_eval[{i}]", repr(float(times[i])), f"a time within [{low}, {high}]")
-    turns = np.diff(times) * (1.0 if span[1] >= span[0] else -1.0) < 0
-    if turns.any():
-        i = int(np.argmax(turns)) + 1
-        raise ArgumentError(f"t_eval[{i}]", repr(float(times[i])), f"a time after {float(times[i - 1])}, as in the run")
-    return times
-
-
-def settings_of(
-    rtol: Any = None,
-    atol: Any = None,
-    first_step: Any = None,
-    min_step: Any = None,
-    max_step: Any = None,
-    max_steps: Any = None,
-    dt: Any = None,
-    steps: Any = None,
-    stops: Any = (),
-    dense_output: Any = False,
-    linear: Any = False,
-) -> dict[str, Any]:
-    """Return the settings of the steps, checked."""
-    if dt is not None and steps is not None:
-        raise ArgumentError("steps", repr(steps), "only one of dt and steps")
-    longest = _positive("max_step", max_step)
-    return {
-        "rtol": None if rtol is None else number("rtol", rtol),
-        "atol": None if atol is None else number("atol", atol),
-        "first_step": _positive("first_step", first_step),
-        "min_step": _positive("min_step", min_step),
-        "max_step": None if longest == float("inf") else longest,
-        "max_steps": _count("max_steps", max_steps),
-        "dt": _positive("dt", dt),
-        "steps": _count("steps", steps),
-        "split": False,
-        "kinks": [],
-        "stops": [] if stops is None or isinstance(stops, tuple) and not stops else _list("stops", stops),
-        "dense_output": _flag("dense_output", dense_output),
-        "linear": _flag("linear", linear),
-    }
-
-
-def _list(name: str, x: Any) -> list[float]:
-    """Return x as a list of numbers."""
-    array = np.atleast_1d(real(name, x))
-    if array.ndim > 1:
-        raise ArgumentError(name, f"shape {array.shape}", "a list of numbers")
-    return [float(number) for number in array]
 
 
 #: The last spaces: to make one again costs more than a short run.
@@ -167,6 +61,7 @@ class Ready:
         name_of("action", action)
         if not (frame is None or isinstance(frame, str)):
             raise TypeError(f"frame: a value of type {type(frame).__name__}, expected \"space\" or \"body\"")
+        y0 = of_rotation(group, y0)
         self.parts = group if isinstance(group, Parts) else None
         self.layout: Parts | ComplexPoints | None = self.parts
         if isinstance(group, Unitary) or isinstance(group, str) and is_unitary_name(group):
@@ -258,7 +153,10 @@ class Ready:
             of_layout = g
             g = lambda t, y, *args: of_layout(t, layout.split(y), *args)  # noqa: E731
         name = f"events[{i}] ({event.name})"
-        if layout is not None and change is not None:
+        if layout is None and change is not None and self.shape == (4,):
+            of_group = change
+            change = lambda t, y, *args: of_rotation(self.group, of_group(t, y, *args))  # noqa: E731
+        elif layout is not None and change is not None:
             of_parts = change
 
             def change(t: float, y: Array, *args: Any) -> Array:
@@ -469,14 +367,6 @@ def _reason(found: dict[str, Any]) -> str:
 def _one(t: float, y: Any) -> float:
     """The function of an event without zeros."""
     return 1.0
-
-
-def check_stops(settings: dict[str, Any], span: tuple[float, float]) -> None:
-    """Raise ArgumentError for a stop outside of the span."""
-    low, high = min(span), max(span)
-    for i, stop in enumerate(settings["stops"]):
-        if not low <= stop <= high:
-            raise ArgumentError(f"stops[{i}]", repr(stop), f"a time within [{low}, {high}]")
 
 
 def check_of_problem(group: Any, frame: Any, action: str, linear: Flag) -> None:

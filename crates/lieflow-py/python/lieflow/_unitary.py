@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._arrays import finite, into, leading, near, pair, real, series, size_of_elements, what, whole
+from ._arrays import finite, into, leading, near, pair, quaternions, real, series, size_of_elements, what, whole
 from ._errors import ArgumentError
 from ._groups import Group, expm, size_of, tolerance
 from ._types import Real, Whole
@@ -31,6 +31,13 @@ def is_unitary_name(name: str) -> bool:
 def is_su2(name: str) -> bool:
     """Return True for ``SU(2)``, with or without parentheses."""
     return _plain(name) == "su2"
+
+
+def of_rotation(group: Any, y: Any) -> Any:
+    """Return the quaternion of SciPy's Rotation, where the group is that of unit quaternions. Return another y as it is."""
+    if hasattr(y, "as_quat") and isinstance(group, str) and _plain(group) in ("s3", "su2"):
+        return quaternions(y)
+    return y
 
 
 def complex_numbers(name: str, x: Any) -> Complex:

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from ._arrays import quaternions
 from ._fields import Samples
 
 __all__ = ["alike", "is_complex", "part", "plain"]
@@ -55,7 +56,7 @@ def plain(name: str, x: Any) -> Any:
         return [plain(f"{name}[{i}]", entry) for i, entry in enumerate(x)]
     if hasattr(x, "as_matrix"):  # SciPy's Rotation
         if name == "quaternion":
-            return np.roll(x.as_quat(), 1, axis=-1).tolist()  # its last number is the real part
+            return quaternions(x).tolist()
         return x.as_matrix().tolist()
     if hasattr(x, "__array__"):
         return plain(name, np.asarray(x))
