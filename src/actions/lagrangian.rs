@@ -19,7 +19,8 @@ use crate::tolerance::Scales;
 
 /// Λ(g, P) = (C + DP)(A + BP)⁻¹ on symmetric m×m matrices.
 ///
-/// Where A + BP is singular P has a pole. A step that ends there fails with [`StepError::NotFinite`].
+/// Where A + BP is singular P has a pole. A step that ends there fails with [`StepError::NotFinite`], or with m ≥ 2 the other
+/// numbers of P lose their digits: let steps end beside it.
 ///
 /// ```
 /// use lieflow::actions::Lagrangian;
@@ -139,7 +140,7 @@ impl Action<MatrixGroup> for Lagrangian {
         tally(|| Ops::dots(4, p.nrows() * p.ncols()) + Ops::sqrts(5) + Ops::muladds(3));
         scales.part().ratio_in_any_direction(moved, p)
     }
-    /// A step from a pole of P, or to one, has the error of its other end: P has no digits at a pole, and has them after it.
+    /// A step from a pole of P, or to one, has the error of its other end: P has no digits at a pole; with m = 1 it has them after it.
     fn error_ratio_of_step(
         &self,
         group: &MatrixGroup,

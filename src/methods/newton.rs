@@ -121,12 +121,14 @@ impl<'a, S: Real> Progress<'a, S> {
 
     /// True if an iteration that is done is done for each part of the solution, too. `change` is the last one, and
     /// `of_parts` the largest that a part has relative to its own size. A part that is small beside the others converges
-    /// later than they do.
+    /// later than they do, and a part that has just left 0 has no size to be relative to: `of_parts` is infinite.
     #[inline]
     pub(super) fn parts_are_done(&mut self, change: S, of_parts: S) -> bool {
+        // Not of NaN, where the squares of a large point have left the range.
+        let is_infinite = !of_parts.is_finite() && (S::lit(1.0) / of_parts).is_finite();
         let shrinks = (of_parts / self.last_of_parts).all_below(0.9);
         self.last_of_parts = of_parts;
-        !shrinks
+        !(shrinks || is_infinite)
             || (of_parts / change).all_below(1.01)
             || of_parts.all_below(0.25 * S::EPSILON)
             || self.iterations + 1 >= FIXED_POINT_MAX
