@@ -7,7 +7,7 @@ use lieflow::Error;
 use lieflow::samples::{Interpolation, Samples};
 
 use crate::reader::values::counted;
-use crate::reader::{Read, ReadError, Refusal, Shape, Value, amount};
+use crate::reader::{Read, ReadError, Refusal, Shape, Value, amount, is_in_range};
 
 /// The key of the file.
 const KEY: &str = "samples";
@@ -55,7 +55,8 @@ fn row(line: &str, columns: &[String], last: Option<f64>) -> Result<Vec<f64>, St
         format!("column {name}: found `{}`, expected {expected}", field.trim())
     };
     let number = |(field, name): (&str, &String)| {
-        let x = field.trim().parse().ok().filter(|x: &f64| x.is_finite());
+        let field = field.trim();
+        let x = field.parse().ok().filter(|&x| is_in_range(x, field));
         x.ok_or_else(|| wrong(field, name, "a finite number".into()))
     };
     let row: Vec<f64> = line.split(',').zip(columns).map(number).collect::<Result<_, _>>()?;

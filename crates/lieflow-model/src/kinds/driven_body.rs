@@ -23,7 +23,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::body::*;
 use super::prelude::*;
 use crate::formula::{Formula, Names, Texts, without_value};
-use crate::problem::{PointOf, Turned};
+use crate::problem::{PointOf, Stops, Turned};
 use crate::reader::values;
 
 /// The entry in the list of kinds.
@@ -316,6 +316,11 @@ impl System for Driven {
     }
     fn formula(&self) -> Option<&Formula> {
         self.torques.formulas().next().or(self.samples.as_ref())
+    }
+    /// Those of samples that a torque may depend on.
+    fn knots(&self, t_span: [f64; 2]) -> Option<Stops> {
+        let samples = self.torques.formulas().next()?.samples()?;
+        Some(Stops::at_knots(samples, t_span))
     }
     /// Without a torque: that of the free body.
     fn exact(&self, [t0, t1]: [f64; 2]) -> Option<Result<PointOf<Self>, Error>> {

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use lieflow::actions::Linear;
 use lieflow::problems::{Bond, Constant, CoupledSpins, Couplings, Site, SpinChain};
 use lieflow::scalar::{Counted, Real as Scalar};
+use lieflow::solve::Stops;
 use lieflow_runs::spaces::OnSpheres;
 use nalgebra::Vector3;
 
@@ -394,6 +395,11 @@ impl System for Chain {
             Of::Numbers(..) => self.samples.as_ref(),
             Of::Formulas(stated) => stated.each().next(),
         }
+    }
+    /// Those of samples that a coupling may depend on.
+    fn knots(&self, t_span: [f64; 2]) -> Option<Stops> {
+        let Of::Formulas(stated) = &self.of else { return None };
+        Some(Stops::at_knots(stated.each().next()?.samples()?, t_span))
     }
     fn check_state(&self, arg: &str, spins: &Box<[Vector3<f64>]>) -> Result<(), Error> {
         let mut spins = spins.iter().enumerate();
