@@ -268,3 +268,18 @@ fn the_translation_of_a_motion_is_in_the_error() {
         }
     }
 }
+
+/// The points within a step are those of its polynomial: rows cost no evaluation.
+#[test]
+fn rows_of_a_series_cost_no_evaluation() {
+    let body = RigidBody::<f64>::new(INERTIA).unwrap();
+    let start = V::new(0.1, 2.0, 0.3);
+    for adaptive in [true, false] {
+        let evaluations = |times: Vec<f64>| {
+            let solve = Solve::new(&body, &Taylor::<16>, [0.0, 20.0]).times(times);
+            let solve = if adaptive { solve.tolerances(1e-9, 0.0) } else { solve.steps(40) };
+            solve.run(start).unwrap().stats.evaluations
+        };
+        assert_eq!(evaluations(times(20.0)), evaluations(vec![20.0]));
+    }
+}
