@@ -71,6 +71,19 @@ pub(crate) fn ratio_in_algebra<P: Problem>(
     }
 }
 
+/// The largest error that e ∈ 𝔤 is of a part, relative to the part's own size in the first of two points. From a part that is
+/// 0 it is relative to its size in the second one, to which the step leads.
+#[inline]
+pub(super) fn relative_error_of_parts<P: Problem>(
+    problem: &P,
+    e: &AlgOf<P>,
+    [from, to]: [&PointOf<P>; 2],
+) -> ScalarOf<P> {
+    let of = |y| problem.action().error_ratio(problem.group(), e, y, &mut Scales::relative());
+    let error = of(from);
+    if error.is_finite() { error } else { of(to) }
+}
+
 /// The ratio of an error given as a number, relative to the point.
 #[inline]
 pub(super) fn ratio_of_relative<S: Real, M: Metric<Scalar = S>>(

@@ -16,11 +16,11 @@
 //! Source: after J. C. Simo & K. K. Wong (1991) and D. Lewis & J. C. Simo, J. Nonlinear Sci. 4
 //! (1994); discrete gradients by R. McLachlan, G. Quispel & N. Robidoux (1999).
 
+use super::embedded::relative_error_of_parts;
 use super::extension::{Extension, OneIncrement, of_increment};
 use super::implicit_rkmk::OddMap;
 use super::newton::Progress;
 use super::{Facts, Method, Step, Symmetric, Within};
-use crate::actions::Action;
 use crate::chart::ChartStore;
 use crate::error::{Error, StepError};
 use crate::groups::LieAlgebra;
@@ -28,7 +28,6 @@ use crate::maps::CoordinateMap;
 use crate::problems::{AlgOf, LiePoisson, PointOf, ScalarOf};
 use crate::scalar::Real;
 use crate::space::LinearSpace;
-use crate::tolerance::Scales;
 
 /// The energy–Casimir method with the map Ψ: exp, cay, or another map with Ψ(−u) = Ψ(u)⁻¹.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -112,7 +111,7 @@ impl<P: LiePoisson, Psi: CoordinateMap<P::Group> + OddMap> Method<P> for EnergyC
             let size = lit(1.0) + alg.norm(u);
             let change = alg.norm(old) / size;
             if progress.done("energy-casimir", change)? {
-                let of_parts = problem.action().error_ratio(alg, old, p, &mut Scales::relative());
+                let of_parts = relative_error_of_parts(problem, old, [p, y]);
                 if progress.parts_are_done(change, of_parts / size) {
                     break;
                 }

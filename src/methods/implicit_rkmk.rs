@@ -15,12 +15,12 @@
 //! Source: A. Zanna, K. Engø & H. Munthe-Kaas, Adjoint and selfadjoint Lie-group methods, BIT 41
 //! (2001).
 
+use super::embedded::relative_error_of_parts;
 use super::extension::{Extension, OneIncrement, of_increment};
 use super::gauss::ImplicitTableau;
 use super::newton::Progress;
 use super::stages::copies;
 use super::{Facts, Method, Step, Symmetric, Within};
-use crate::actions::Action;
 use crate::chart::ChartStore;
 use crate::error::{Error, StepError};
 use crate::groups::LieAlgebra;
@@ -28,7 +28,6 @@ use crate::maps::{Cay, CoordinateMap, Exp, ExpOrCay};
 use crate::problems::{AlgOf, PointOf, Problem, ScalarOf};
 use crate::scalar::Real;
 use crate::space::Metric;
-use crate::tolerance::Scales;
 
 /// Implicit RKMK with its chart at the start of the step.
 #[derive(Clone, Copy, Debug)]
@@ -147,10 +146,7 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> RkmkGaussWork<P, 
                 // The change of the last stage.
                 alg.set_zero(u);
                 alg.axpy(h, old, u);
-                let of = |y| problem.action().error_ratio(alg, u, y, &mut Scales::relative());
-                // From a part that is 0 the error is relative to where the step leads.
-                let from = of(p);
-                let of_parts = if from.is_finite() { from } else { of(around.last_point()) };
+                let of_parts = relative_error_of_parts(problem, u, [p, around.last_point()]);
                 if progress.parts_are_done(change, of_parts / size) {
                     break;
                 }

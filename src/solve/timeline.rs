@@ -259,9 +259,7 @@ impl Timeline {
         if self.t == stop.t {
             return Ok(());
         }
-        if self.t == self.jumped_at {
-            run.points().forget();
-        }
+        forget_after(self.jumped_at, self.t, run.points());
         // Where all stages are within a step, none is at the stop.
         stop.jumps &= !self.facts.stages_within;
         match &mut self.pacer {
@@ -389,9 +387,7 @@ impl Timeline {
         if before <= first {
             return Ok(false);
         }
-        if self.t == self.jumped_at {
-            points.forget();
-        }
+        forget_after(self.jumped_at, self.t, points);
         let taken = points.steps(grid.equal(first, before));
         let reached = taken.as_ref().map_or_else(|(step, _)| *step, |()| before);
         if reached > first {
@@ -567,5 +563,12 @@ impl Timeline {
         let StepCost { evaluations, maps } = self.facts.step_with_error.times(count);
         self.stats.evaluations = plus(self.stats.evaluations, evaluations);
         self.stats.maps = self.stats.maps.zip(maps).map(|(n, more)| n + more);
+    }
+}
+
+/// Forgets values of f that are kept for the step from t, where f has jumped at that time.
+fn forget_after(jump: f64, t: f64, points: &mut dyn AnyPoints) {
+    if t == jump {
+        points.forget();
     }
 }

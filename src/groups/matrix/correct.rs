@@ -17,7 +17,7 @@
 
 use faer::{ColMut, ColRef, Mat};
 
-use super::parts::{has_scalar_part, stretch, symmetry};
+use super::parts::{has_scalar_part, symmetry};
 use super::{Form, GroupMatrix, MatrixGroup};
 use crate::dense::{axpy, mul, mul_add, norm_frobenius, scaled_sum};
 use crate::groups::RESIDUAL_MAX;
@@ -145,12 +145,10 @@ impl Cosquare {
 impl MatrixGroup {
     /// [`LieGroup::residual_size`](crate::LieGroup::residual_size) of the element with this matrix.
     pub fn residual_size_of(&self, g: &Mat<f64>) -> f64 {
-        match &self.form {
+        let scale = if self.is_stretched() { self.stretch } else { 1.0 };
+        match self.form {
             Form::Identity => 1.0,
-            Form::Bilinear { m, inverse } if self.is_stretched => {
-                stretch(m, inverse) * norm_frobenius(g).powi(2).max(1.0)
-            }
-            _ => norm_frobenius(g).powi(2).max(1.0),
+            _ => scale * norm_frobenius(g).powi(2).max(1.0),
         }
     }
 
@@ -172,7 +170,7 @@ impl MatrixGroup {
             let is_large = f64::EPSILON * (square - n) > LARGE;
             let reach = residual > noise && residual < RESIDUAL_MAX && !is_large;
             // With a stretched M a rounding of g is a large residual, and X = D/2 is not the least correction.
-            if !reach || self.is_stretched || matches!(self.cosquare, Cosquare::Other) {
+            if !reach || self.is_stretched() || matches!(self.cosquare, Cosquare::Other) {
                 break;
             }
             let quadratic = match (&self.form, &self.cosquare) {

@@ -72,8 +72,8 @@ pub struct MatrixGroup {
     behind_inverse: Option<f64>,
     /// M⁻ᵀM, which decides how elements are corrected.
     cosquare: Cosquare,
-    /// Is M far from a multiple of an orthogonal matrix? Products with M and M⁻¹ lose digits there.
-    is_stretched: bool,
+    /// The [`stretch`](parts::stretch) of M.
+    stretch: f64,
 }
 
 /// A subgroup of the group of the form. Runs are those of the whole group, and f keeps them in the subgroup.
@@ -102,7 +102,7 @@ impl MatrixGroup {
             projector: OnceLock::new(),
             behind_inverse: None,
             cosquare,
-            is_stretched: false,
+            stretch: 1.0,
         })
     }
 
@@ -170,9 +170,9 @@ impl MatrixGroup {
             return Err(Error::Singular { arg: "M", rcond, minimum: RCOND_MIN });
         }
         let inverse = inverse_of(&m);
-        let is_stretched = parts::stretch(&m, &inverse) > parts::STRETCHED;
+        let stretch = parts::stretch(&m, &inverse);
         let group = Self::new(n, Form::Bilinear { m, inverse }, format!("G_M({n})"))?;
-        Ok(MatrixGroup { behind_inverse: check::behind_inverse(n, rcond), is_stretched, ..group })
+        Ok(MatrixGroup { behind_inverse: check::behind_inverse(n, rcond), stretch, ..group })
     }
 
     /// SL(n): GL(n) with determinant 1. exp stays on it; cay does not for n > 2.
@@ -203,9 +203,9 @@ impl MatrixGroup {
         Ok(MatrixGroup { name: format!("SU({n})"), subgroup, ..Self::u(n)? })
     }
 
-    /// True if M is far from a multiple of an orthogonal matrix.
+    /// True if M is far from a multiple of an orthogonal matrix: products with M and M⁻¹ lose digits there.
     pub(crate) fn is_stretched(&self) -> bool {
-        self.is_stretched
+        self.stretch > parts::STRETCHED
     }
     /// True if the determinant is 1 where the form leaves it free.
     pub(crate) fn is_special(&self) -> bool {

@@ -24,7 +24,7 @@ use triangular::{NO_DIGITS, Negative};
 use super::functions::LogGroup;
 use crate::dense::{Lu, RCOND_MIN, is_finite, norm_frobenius, norm1, scaled_sum};
 use crate::error::{Error, NoLogarithm, StepError};
-use crate::groups::{Adjoint, AlgebraMatrix, Form, GroupMatrix, LieAlgebra, MatrixGroup};
+use crate::groups::{Adjoint, AlgebraMatrix, Form, GroupMatrix, LieAlgebra, LieGroup, MatrixGroup};
 use crate::quadrature::GAUSS_LEGENDRE7;
 use crate::so3::POLAR_MAX;
 
@@ -104,13 +104,12 @@ impl MatrixGroup {
 
     /// How far a logarithm of g may be from 𝔤 because g is off the group.
     fn distance_to_group(&self, g: &Mat<f64>) -> f64 {
-        let Some(m) = self.m() else { return POLAR_MAX };
-        let inverse = match self.form() {
-            Form::Bilinear { inverse, .. } => inverse.clone(),
-            _ => m.transpose().to_owned(),
-        };
-        let defect = inverse * g.transpose() * &m * g - Mat::<f64>::identity(self.n(), self.n());
-        10.0 * norm_frobenius(&defect)
+        if matches!(self.form(), Form::Free) {
+            return POLAR_MAX;
+        }
+        let mut g = GroupMatrix::new_unchecked(g.clone());
+        let [mut a, mut b] = [self.identity(), self.identity()];
+        10.0 * self.correct(&mut g, [&mut a, &mut b])
     }
 
     /// The small eigenvalues of a g that is far from 𝟙 are the rounding of the large ones.

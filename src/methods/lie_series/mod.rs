@@ -5,8 +5,9 @@
 //! size of the terms left out. Newton–Schulz ([`LieGroup::correct`]) moves the sum to the group, and y⁺ = Λ(Ψ, y).
 //!
 //! Order N. Preserves: the group and the invariants of the action, to rounding, as far as [`LieGroup::correct`] reaches;
-//! energy and symmetry to the size of the terms left out, and so the determinant 1 of SL(n) and SU(n), and G_M where M is
-//! neither symmetric, skew nor orthogonal, or far from a multiple of an orthogonal matrix. A sum that is far from the group (0.1 in gᵀMg − M) is refused with [`StepError::OutsideChart`].
+//! energy and symmetry to the size of the terms left out. So are the determinant 1 of SL(n) and SU(n), and G_M where M is
+//! neither symmetric, skew nor orthogonal, or far from a multiple of an orthogonal matrix. A sum that is far from the group
+//! (0.1 in gᵀMg − M) is refused with [`StepError::OutsideChart`].
 //! Cost: N(N−1)/2 products for Ψ, as many for the coefficients of a quadratic field, one action, and one or two steps
 //! of Newton–Schulz. A point within a step costs only the action and Newton–Schulz. The last two terms are the error
 //! estimate of an adaptive run. For the free rigid body in ℝ³ [`Taylor`](crate::methods::Taylor) is the same method on

@@ -115,9 +115,7 @@ impl Torques {
         let of_both = self.in_the_body.iter().chain(&self.in_space);
         of_both.flat_map(|formulas| formulas.iter())
     }
-}
 
-impl Torques {
     /// The sum of the torques that are stated in space, and of those that are stated in the body, along the axes of the
     /// scene. None where no torque is stated in a frame.
     fn stated<S: Real + Into<f64>>(&self, at: &BodyMotion<S>) -> [Option<Vector3<S>>; 2] {

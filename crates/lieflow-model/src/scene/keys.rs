@@ -410,6 +410,9 @@ read_by_keys! {
     }
 }
 
+/// The keys that say where rows are written.
+pub(super) const ROWS: [&str; 4] = ["every", "times", "count", "interval"];
+
 /// The rows of a run.
 pub(super) struct Rows {
     pub(super) save: SaveAt,
@@ -505,12 +508,8 @@ impl OutputKeys {
         if let Some(interval) = interval {
             interval.checked("interval", POSITIVE, |length| length > 0.0)?;
         }
-        at_most_one([
-            ("every", every.is_some()),
-            ("times", times.is_some()),
-            ("count", count.is_some()),
-            ("interval", interval.is_some()),
-        ])?;
+        let given = [every.is_some(), times.is_some(), count.is_some(), interval.is_some()];
+        at_most_one(ROWS.into_iter().zip(given))?;
         let [t0, t1] = t_span.ok_or_else(ReadError::known)?;
         let intervals = |count: u64| SaveAt::Interval((t1 - t0).abs() / count as f64);
         let save = match (every, times, count, interval) {

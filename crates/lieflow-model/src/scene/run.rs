@@ -9,7 +9,7 @@ use super::document::{Document, Finder, with_file};
 use super::error::SceneError;
 use super::events::{self, EventKeys, SceneEvent};
 use super::files::read_samples;
-use super::keys::{Limits, MethodKeys, OutputKeys, Rows, TimeKeys, Times, with_defaults};
+use super::keys::{Limits, MethodKeys, OutputKeys, ROWS, Rows, TimeKeys, Times, with_defaults};
 use super::plot::{PlotFigure, check_plot};
 use super::units::UnitKeys;
 use crate::kinds;
@@ -349,8 +349,8 @@ impl Scene {
     pub fn rows_key(&self) -> &'static str {
         let document = Document::parse(&self.source, &self.text, &self.file);
         let output = document.as_ref().ok().and_then(|document| document.section("output").ok());
-        let keys = ["every", "times", "count", "interval"].into_iter();
-        let mut given = keys.filter(|key| output.is_some_and(|output| output.get(key).is_some()));
+        let mut given =
+            ROWS.into_iter().filter(|key| output.is_some_and(|output| output.get(key).is_some()));
         given.next().unwrap_or("interval")
     }
 
