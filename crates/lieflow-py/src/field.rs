@@ -5,7 +5,9 @@ use std::sync::{Arc, Mutex};
 
 use lieflow_model::kinds::own::OwnField;
 use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
+use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
+use pyo3::pyclass::{PyTraverseError, PyVisit};
 use pyo3::types::{PyFloat, PyList, PyTuple};
 
 /// The first exception of the callables of a run, the flag that ends the run, and the calls of f.
@@ -35,10 +37,16 @@ impl Raised {
     }
 }
 
-/// A function of (t, y, *args).
-pub(crate) struct Callable {
+/// A function and its further arguments.
+struct Held {
     f: Py<PyAny>,
     args: Vec<Py<PyAny>>,
+}
+
+/// A function of (t, y, *args).
+pub(crate) struct Callable {
+    /// None after [`clear`](Self::clear). A run has one call of it at a time.
+    held: Mutex<Option<Held>>,
     /// The shape of y.
     shape: Vec<usize>,
     /// True for a function of t alone.
@@ -65,7 +73,24 @@ impl Callable {
         (shape, of_time): (&[usize], bool),
         raised: Arc<Raised>,
     ) -> Self {
-        Callable { f, args, shape: shape.to_vec(), of_time, raised }
+        let held = Mutex::new(Some(Held { f, args }));
+        Callable { held, shape: shape.to_vec(), of_time, raised }
+    }
+
+    /// Shows the cycle collector of Python what it holds.
+    pub(crate) fn traverse(&self, visit: &PyVisit<'_>) -> Result<(), PyTraverseError> {
+        // A call has the lock until it ends: the function is then in use.
+        let Ok(held) = self.held.try_lock() else { return Ok(()) };
+        let Some(Held { f, args }) = &*held else { return Ok(()) };
+        visit.call(f)?;
+        args.iter().try_for_each(|arg| visit.call(arg))
+    }
+
+    /// Lets go of the function, which cannot be called any more.
+    pub(crate) fn clear(&self) {
+        let held = self.held.try_lock().ok().and_then(|mut held| held.take());
+        // Their ends may run code of Python: not under the lock.
+        drop(held);
     }
 
     /// Calls it, and reads its value. An exception ends the run.
@@ -85,18 +110,23 @@ impl Callable {
     }
 
     fn value<'py>(&self, py: Python<'py>, t: f64, y: &[f64]) -> PyResult<Bound<'py, PyAny>> {
-        let f = self.f.bind(py);
-        if self.of_time && self.args.is_empty() {
+        let held = self.held.try_lock().ok();
+        let Some(Held { f, args }) = held.as_deref().and_then(Option::as_ref) else {
+            let freed = "f: it was freed with its run, expected a run in use";
+            return Err(PyRuntimeError::new_err(freed));
+        };
+        let f = f.bind(py);
+        if self.of_time && args.is_empty() {
             return f.call1((t,));
         }
-        if self.args.is_empty() {
+        if args.is_empty() {
             return f.call1((t, array(py, &self.shape, y)?));
         }
         let mut all: Vec<Bound<'py, PyAny>> = vec![PyFloat::new(py, t).into_any()];
         if !self.of_time {
             all.push(array(py, &self.shape, y)?.into_any());
         }
-        all.extend(self.args.iter().map(|arg| arg.bind(py).clone()));
+        all.extend(args.iter().map(|arg| arg.bind(py).clone()));
         f.call1(PyTuple::new(py, all)?)
     }
 }
@@ -167,7 +197,7 @@ fn read_value(
 }
 
 /// The field of a callable.
-pub(crate) fn of_callable(f: Callable, shape: &[usize]) -> Arc<OwnField> {
+pub(crate) fn of_callable(f: Arc<Callable>, shape: &[usize]) -> Arc<OwnField> {
     let shape = shape.to_vec();
     Arc::new(move |t, y, v| {
         let called = !f.raised.stop.load(Ordering::Relaxed);

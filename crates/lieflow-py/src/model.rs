@@ -483,6 +483,6 @@ impl Model {
         let (stops, max_steps) = (settings.stops(), settings.max_steps);
         let run = StepByStep { steps, stops, max_steps, cancel: None };
         let run = self.model.stepper(&spec, start, run);
-        Stepper::new(py, run, &[self.width()], (Arc::default(), false))
+        Stepper::new(py, run, &[self.width()], (Arc::default(), None))
     }
 }

@@ -120,7 +120,7 @@ impl Space {
         if let Some(error) = raised.take() {
             return Err(error);
         }
-        Stepper::new(py, run, self.space.point(), (raised, ready.attached))
+        Stepper::new(py, run, self.space.point(), (raised, ready.callable))
     }
 }
 
@@ -258,8 +258,8 @@ struct Ready {
     problem: Own,
     spec: MethodSpec,
     steps: Steps,
-    /// Does f call Python?
-    attached: bool,
+    /// f, if it calls Python.
+    callable: Option<Arc<Callable>>,
 }
 
 impl Ready {
@@ -273,7 +273,7 @@ impl Ready {
     ) -> PyResult<Self> {
         let (fitting, space) = (&space.fitting[usize::from(settings.linear)], &space.space);
         let shape = space.point();
-        let attached = matches!(field, FieldParts::Callable(..));
+        let mut callable = None;
         let field = match field {
             FieldParts::Address(0, _) => {
                 return Err(argument(py, "fun", "a null address", "the address of a C function"));
@@ -288,7 +288,7 @@ impl Ready {
             }
             FieldParts::Callable(f, args) => {
                 let f = Callable::new(f, args, (shape, settings.linear), raised.clone());
-                field::of_callable(f, space.value())
+                field::of_callable(callable.insert(Arc::new(f)).clone(), space.value())
             }
         };
         if t_span[0] == t_span[1] {
@@ -303,7 +303,7 @@ impl Ready {
         };
         let (spec, orders) = fitting.method(py, method, orders)?;
         let steps = settings.steps(py, t_span, (orders, || y0.into()), "fun")?;
-        Ok(Ready { problem, spec, steps, attached })
+        Ok(Ready { problem, spec, steps, callable })
     }
 }
 
@@ -331,9 +331,11 @@ pub(crate) fn solve<'py>(
     formulas.iter().for_each(|formulas| formulas.get().0.forget());
     let mut watch = Watch::new(py, (events, callback), &args, (shape, shape), raised.clone());
     let save = save_of(t_eval)?;
-    let attached = ready.attached || watch.has_callables();
+    let attached = ready.callable.is_some() || watch.has_callables();
     let mut run = || drive(&ready, &y0, (&settings, save.clone()), &mut watch);
     let (status, curve) = if attached { run() } else { py.detach(run) };
+    // The points at all times need no call of f. It may refer to the result, in a cycle that Python does not see.
+    ready.callable.iter().for_each(|f| f.clear());
     let lost = status.as_ref().err().zip(formulas.as_ref());
     let lost = lost.and_then(|(error, formulas)| formulas.get().lost_by(py, error));
     let result = watch.seen.into_dict(py, &raised, status, (shape, LONGEST), Some(&ready.steps))?;

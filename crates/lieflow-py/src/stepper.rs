@@ -7,10 +7,11 @@ use lieflow_model::problem;
 use numpy::{PyArray1, PyArrayDyn, PyReadonlyArray1};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
+use pyo3::pyclass::{PyTraverseError, PyVisit};
 use pyo3::types::PyBytes;
 
 use crate::error::{of_run, of_state, refused};
-use crate::field::{self, Raised};
+use crate::field::{self, Callable, Raised};
 use crate::in_turn::InTurn;
 use crate::run::SIGNALS;
 
@@ -20,7 +21,8 @@ pub(crate) struct Stepper {
     run: InTurn<Box<dyn problem::Stepper>>,
     shape: Vec<usize>,
     raised: Arc<Raised>,
-    attached: bool,
+    /// f, if it calls Python.
+    callable: Option<Arc<Callable>>,
 }
 
 impl Stepper {
@@ -28,13 +30,13 @@ impl Stepper {
         py: Python<'_>,
         run: Result<Box<dyn problem::Stepper>, RunError>,
         shape: &[usize],
-        (raised, attached): (Arc<Raised>, bool),
+        (raised, callable): (Arc<Raised>, Option<Arc<Callable>>),
     ) -> PyResult<Self> {
         let run = InTurn::new(
             run.map_err(|error| of_run(py, &error))?,
             "f cannot use the integrator that calls it",
         );
-        Ok(Stepper { run, shape: shape.to_vec(), raised, attached })
+        Ok(Stepper { run, shape: shape.to_vec(), raised, callable })
     }
 
     /// Reads the run.
@@ -53,7 +55,7 @@ impl Stepper {
         act: impl FnOnce(&mut dyn problem::Stepper) -> Result<T, RunError> + Send,
     ) -> PyResult<T> {
         let done = self.read(py, |run| {
-            let done = if self.attached { act(run) } else { py.detach(|| act(run)) };
+            let done = if self.callable.is_some() { act(run) } else { py.detach(|| act(run)) };
             match self.raised.take() {
                 None => Ok(done),
                 Some(error) => {
@@ -79,6 +81,12 @@ impl Stepper {
 
 #[pymethods]
 impl Stepper {
+    fn __traverse__(&self, visit: PyVisit<'_>) -> Result<(), PyTraverseError> {
+        self.callable.iter().try_for_each(|f| f.traverse(&visit))
+    }
+    fn __clear__(&self) {
+        self.callable.iter().for_each(|f| f.clear());
+    }
     #[getter]
     fn t(&self, py: Python<'_>) -> PyResult<f64> {
         self.read(py, |run| run.t())

@@ -1,9 +1,11 @@
 """Runs that are taken step by step: stops, threads, exceptions, Ctrl-C."""
 
 import _thread
+import gc
 import pickle
 import threading
 import time
+import weakref
 
 import lieflow as lf
 import numpy as np
@@ -274,3 +276,70 @@ def test_f_is_checked_where_a_span_is_empty():
                 make(f, (3, 3), np.eye(3), **ROTATION)
     r = lf.solve_ivp(lambda t, y: [0, 0, 1.0], (3, 3), np.eye(3), **ROTATION)
     assert r.success and r.nfev == 1 and np.array_equal(r.y_end, np.eye(3))
+
+
+class Owner:
+    """An object whose methods are the functions of a run that it keeps."""
+
+    def f(self, t, y, *args):
+        return [0.0, 0.0, 1.0]
+
+    def of_parts(self, t, y):
+        return {"n": [1.0]}
+
+    def event(self, t, y, *args):
+        return t - 0.5
+
+    def change(self, t, y, *args):
+        return y
+
+    def callback(self, t, y):
+        return False
+
+
+def dense(f, **options):
+    return lf.solve_ivp(f, (0, 1), np.eye(3), dense_output=True, **ROTATION, **options)
+
+
+OWNED = {
+    "integrator": lambda o: lf.Integrator(o.f, None, (0, 1), np.eye(3), **ROTATION),
+    "integrator of args": lambda o: lf.Integrator(lambda t, y, o: o.f(t, y), None, (0, 1), np.eye(3), args=(o,), **ROTATION),
+    "integrator of parts": lambda o: lf.Integrator(o.of_parts, None, (0, 1), {"n": [1.0]}, group=lf.Parts(n="numbers 1")),
+    "result": lambda o: dense(o.f),
+    "result of args": lambda o: dense(lambda t, y, o: o.f(t, y), args=(o,)),
+    "event": lambda o: dense(lambda t, y: [0.0, 0.0, 1.0], events=lf.Event(o.event, terminal=1, change=o.change), callback=o.callback),
+    "problem": lambda o: lf.solve_ivp(BODY, (0, 1), events=lf.Event(o.event, terminal=1), callback=o.callback, dense_output=True),
+}
+
+
+@pytest.mark.parametrize("name", OWNED)
+def test_what_refers_to_its_own_run_is_freed(name):
+    owners = []
+    for _ in range(5):
+        owner = Owner()
+        owner.run = OWNED[name](owner)
+        if hasattr(owner.run, "step"):
+            owner.run.step()
+        else:
+            assert owner.run.success
+        owners.append(weakref.ref(owner))
+        del owner
+    gc.collect()
+    assert [owner() for owner in owners] == [None] * 5
+
+
+def test_a_function_that_names_its_run_is_freed():
+    def function():
+        def f(t, y):
+            return [0.0, 0.0, 1.0 if run else 0.0]
+
+        run = None
+        run = lf.Integrator(f, None, (0, 1), np.eye(3), **ROTATION)
+        gc.collect()  # what is in use stays
+        run.advance_to(1.0)
+        assert run.t == 1.0
+        return weakref.ref(f)
+
+    freed = [function() for _ in range(5)]
+    gc.collect()
+    assert [f() for f in freed] == [None] * 5
