@@ -99,6 +99,7 @@ def test_an_argument_of_another_kind_is_named(call, error, words):
         (lambda: lf.solve_ivp(lambda t, y: np.zeros((4, 4)), (0, 1), [[1, 0.2], [0.1, 1]], group="Sp(4)", action="lagrangian"), "y0"),
         (lambda: lf.Samples([0.0], np.zeros((1, 3))), "t"),
         (lambda: lf.Samples([0.0, 1.0], [[0, 0, np.nan], [0, 0, 0]]), "values[0, 2]"),
+        (lambda: lf.Samples([0.0, 1.0], np.zeros((2, 0))), "values"),
         (lambda: lf.Gm(np.zeros((2, 2))), "M"),
         (lambda: lf.Gm([[1.0, np.nan], [0, 1]]), "M[0, 1]"),
         (lambda: lf.Gm(np.zeros((0, 0))), "M"),

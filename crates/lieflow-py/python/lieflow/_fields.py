@@ -166,8 +166,8 @@ class Samples(Unchanging):
             raise ArgumentError("t", f"shape {times.shape}", "shape (k,)")
         if rows.ndim == 1:
             rows = rows[:, None]
-        if rows.ndim != 2 or len(rows) != len(times):
-            raise ArgumentError("values", f"shape {rows.shape}", f"shape ({len(times)}, n)")
+        if rows.ndim != 2 or len(rows) != len(times) or rows.shape[1] == 0:
+            raise ArgumentError("values", f"shape {rows.shape}", f"shape ({len(times)}, n) with at least one column")
         n = rows.shape[1]
         of = tuple(names) if names is not None else ("s",) if n == 1 else tuple(f"s{j + 1}" for j in range(n))
         for j, name in enumerate(of):
