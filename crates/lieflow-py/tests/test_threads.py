@@ -5,6 +5,7 @@ from __future__ import annotations
 import pickle
 import threading
 import time
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -118,3 +119,15 @@ def test_points_do_not_depend_on_the_parts_of_a_call():
 def test_samples_of_many_times_release_the_interpreter():
     samples = lf.Samples(np.arange(1000.0), np.ones((1000, 3)), "cubic")
     assert turns_during(samples, np.linspace(0, 100, 5_000_000)) > 20
+
+
+@pytest.mark.parametrize("of", ["field", "problem"])
+def test_runs_of_one_object_in_threads_have_their_own_reasons(of):
+    pole = ["ln(0.5 - t)", "0", "0"]
+    field, body = lf.Field("SO(3)", pole), lf.DrivenBody(inertia=[1.0, 2.0, 3.0], omega_body=[0.0, 0.0, 0.1], torque=pole)
+    runs = {"field": lambda: lf.solve_ivp(field, (0, 1), np.eye(3), frame="body"), "problem": lambda: lf.solve_ivp(body, (0, 1))}
+    alone = runs[of]().message
+    assert "ln(0.5 - t) is" in alone
+    with ThreadPoolExecutor(4) as threads:
+        messages = list(threads.map(lambda _: runs[of]().message, range(200)))
+    assert set(messages) == {alone}

@@ -80,17 +80,17 @@ impl Formula {
         self.origin.names.losses().see(&self.origin, &self.tape, &values);
     }
 
-    /// Forgets what this formula and those of the same names lost.
+    /// Forgets what this formula and those of the same names lost in this thread.
     pub fn forget(&self) {
         self.origin.names.losses().forget();
     }
 
-    /// Which of this formula and those of the same names had no finite value, and where.
+    /// Which of this formula and those of the same names had no finite value in this thread, and where.
     pub fn lost(&self, which: Which) -> Option<Lost> {
         self.origin.names.losses().tell(which)
     }
 
-    /// The formula of the same names by which a run ended with this error.
+    /// The formula of the same names by which a run in this thread ended with this error.
     pub fn lost_by(&self, error: &RunError) -> Option<Lost> {
         match error {
             RunError::Step(Failure { source, .. }) if is_of_values(source) => {

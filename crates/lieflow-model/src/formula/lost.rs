@@ -2,6 +2,7 @@
 
 use core::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::{self, ThreadId};
 
 use super::names::{Entry, Names, continues_name};
 use super::tape::Tape;
@@ -32,9 +33,15 @@ struct Loss {
     values: Vec<f64>,
 }
 
-/// What formulas of the same names lost.
+/// The first and the last loss of a thread.
+type OfThread = (ThreadId, [Option<Loss>; 2]);
+
+/// What formulas of the same names lost, for each thread apart: runs in several threads may have the same formulas.
 #[derive(Debug, Default)]
-pub(super) struct Losses(Mutex<[Option<Loss>; 2]>);
+pub(super) struct Losses(Mutex<Vec<OfThread>>);
+
+/// The losses of so many threads are kept. Those of the oldest are then forgotten.
+const THREADS: usize = 256;
 
 /// Which of the losses since the last [`Formula::forget`](super::Formula::forget).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,8 +61,16 @@ impl Losses {
             return;
         }
         let loss = || Loss { origin: origin.clone(), tape: tape.clone(), values: values.to_vec() };
-        let mut losses = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let [first, last] = &mut *losses;
+        let mut threads = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let me = thread::current().id();
+        let place = threads.iter().position(|(thread, _)| *thread == me).unwrap_or_else(|| {
+            if threads.len() == THREADS {
+                threads.remove(0);
+            }
+            threads.push((me, [None, None]));
+            threads.len() - 1
+        });
+        let (_, [first, last]) = &mut threads[place];
         first.get_or_insert_with(loss);
         // At one point the first formula counts.
         if last.as_ref().is_none_or(|last| last.values != values) {
@@ -63,13 +78,18 @@ impl Losses {
         }
     }
 
+    /// Forgets what this thread lost.
     pub(super) fn forget(&self) {
-        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = [None, None];
+        let me = thread::current().id();
+        let mut threads = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        threads.retain(|(thread, _)| *thread != me);
     }
 
-    /// The loss in words.
+    /// The loss of this thread in words.
     pub(super) fn tell(&self, which: Which) -> Option<Lost> {
-        let losses = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let me = thread::current().id();
+        let threads = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let (_, losses) = threads.iter().find(|(thread, _)| *thread == me)?;
         losses[which as usize].as_ref().map(Loss::named)
     }
 }

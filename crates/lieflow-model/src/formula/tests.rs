@@ -93,6 +93,23 @@ fn a_formula_has_no_value_where_it_has_none() {
     assert_eq!(lost.as_deref(), Some("f = 1/(x - 1) is inf at x = 1"));
 }
 
+#[test]
+fn each_thread_has_its_own_losses() {
+    let pole = read("1/(x - 1)").unwrap();
+    assert!(pole.value::<f64>(&[1.0, 2.0, 3.5]).is_infinite());
+    let other = std::thread::scope(|scope| {
+        let run = || {
+            pole.forget();
+            pole.lost(Which::Last)
+        };
+        scope.spawn(run).join().unwrap()
+    });
+    assert_eq!(other, None);
+    assert!(pole.lost(Which::Last).is_some());
+    pole.forget();
+    assert_eq!(pole.lost(Which::Last), None);
+}
+
 /// f′ against (8(f(h) − f(−h)) − (f(2h) − f(−2h)))/12h, whose error is h⁴f⁽⁵⁾/30 and ε|f|/h: with
 /// h = 2⁻¹⁰ that is 1e-12 for the derivatives of these.
 #[test]

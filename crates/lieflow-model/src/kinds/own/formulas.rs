@@ -86,12 +86,12 @@ impl Formulas {
         self.formulas.first()?.samples()
     }
 
-    /// Forgets which formulas had no finite value.
+    /// Forgets which formulas had no finite value in this thread.
     pub fn forget(&self) {
         self.formulas.iter().take(1).for_each(Formula::forget);
     }
 
-    /// The formula by which a run ended with this error.
+    /// The formula by which a run in this thread ended with this error.
     pub fn lost_by(&self, error: &RunError) -> Option<Lost> {
         self.formulas.first()?.lost_by(error)
     }
