@@ -25,7 +25,7 @@ pub(crate) struct Input<'py> {
 }
 
 /// The array as it is, if its numbers can be read as a slice.
-fn plain<'py>(x: &Bound<'py, PyAny>) -> Option<Bound<'py, PyArrayDyn<f64>>> {
+pub(crate) fn plain<'py>(x: &Bound<'py, PyAny>) -> Option<Bound<'py, PyArrayDyn<f64>>> {
     let array = x.cast::<PyArrayDyn<f64>>().ok()?;
     let aligned = (array.data() as usize).is_multiple_of(align_of::<f64>());
     (array.is_c_contiguous() && aligned).then(|| array.clone())

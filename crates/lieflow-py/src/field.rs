@@ -10,6 +10,8 @@ use pyo3::prelude::*;
 use pyo3::pyclass::{PyTraverseError, PyVisit};
 use pyo3::types::{PyFloat, PyList, PyTuple};
 
+use crate::arrays::plain;
+
 /// The first exception of the callables of a run, the flag that ends the run, and the calls of f.
 #[derive(Default)]
 pub(crate) struct Raised {
@@ -167,11 +169,10 @@ fn read_value(
     shape: &[usize],
     out: &mut [f64],
 ) -> PyResult<()> {
-    if let Ok(array) = value.cast::<PyArrayDyn<f64>>()
+    if let Some(array) = plain(value)
         && array.shape() == shape
-        && array.is_c_contiguous()
     {
-        // SAFETY: the array is in C order, and nothing runs that could change it while it is read.
+        // SAFETY: the array is in C order and aligned, and nothing runs that could change it while it is read.
         out.copy_from_slice(unsafe { array.as_slice()? });
         return Ok(());
     }

@@ -74,6 +74,26 @@ def test_arrays_of_every_layout_work(name):
         assert np.abs(f(*(a.astype(np.float32) for a in args)) - right).max() < 1e-4
 
 
+def packed(values):
+    """The same numbers, not aligned, as in a record after one byte."""
+    values = np.asarray(values)
+    records = np.zeros(1, dtype=[("flag", "u1"), ("values", values.dtype, values.shape)])
+    records["values"] = values
+    assert not records[0]["values"].flags.aligned
+    return records[0]["values"]
+
+
+def test_arrays_that_are_not_aligned_work():
+    rotation, h = {"group": "SO(3)", "frame": "body"}, np.array([[0.5j, 1.0], [-1.0, 0.25j]])
+    rate = packed([0.0, 0.5, 1.0])
+    run = lf.solve_ivp(lambda t, y: rate, (0, 1), packed(np.eye(3)), events=lambda t, y: packed([t - 0.5]), **rotation)
+    right = lf.solve_ivp(lambda t, y: rate.tolist(), (0, 1), np.eye(3), events=lambda t, y: t - 0.5, **rotation)
+    assert np.array_equal(run.y_end, right.y_end) and np.array_equal(run.t_events[0], right.t_events[0])
+    unitary = lf.solve_ivp(lambda t, y: packed(h), (0, 1), packed(np.eye(2) + 0j), group="U(2)", frame="body")
+    assert np.abs(unitary.y_end - lf.expm(h)).max() < 1e-13
+    assert np.array_equal(lf.expm(packed(h)), lf.expm(h)) and np.array_equal(lf.expm(packed(A4)), lf.expm(A4))
+
+
 @ALL
 def test_empty_axes_give_an_empty_result(name):
     f, args = GOOD[name]

@@ -17,8 +17,8 @@ from ._errors import ArgumentError
 from ._types import Matrices, Whole
 
 __all__ = [
-    "common", "elements", "finite", "first", "into", "kept", "leading", "MEMBERSHIP", "name_of", "near", "number",
-    "own", "pair", "read_only", "real", "series", "size_of_elements", "together", "value", "what", "whole", "wrong_out",
+    "common", "complex_numbers", "elements", "finite", "first", "into", "kept", "leading", "MEMBERSHIP",
+    "name_of", "near", "number", "own", "pair", "read_only", "real", "series", "size_of_elements", "together", "value", "what", "whole", "wrong_out",
 ]
 
 Array = NDArray[np.float64]
@@ -92,6 +92,18 @@ def real(name: str, x: Any) -> Array:
     if array is None:
         raise TypeError(f"{name}: {what(x)}, expected real numbers in an array")
     return array
+
+
+def complex_numbers(name: str, x: Any) -> NDArray[np.complex128]:
+    """Return x as an array of complex128 in C order. Raise TypeError if it has other things than numbers."""
+    try:
+        array = np.asarray(x)
+    except ValueError:
+        array = real(name, x)  # rows of different lengths: it raises
+    if array.dtype.kind not in "cfiub":
+        raise TypeError(f"{name}: {what(x)}, expected complex numbers")
+    array = np.asarray(array, dtype=np.complex128, order="C")
+    return array if array.flags.aligned else array.copy()
 
 
 def own(name: str, x: Any) -> Array:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _lieflow
-from ._arrays import Array, elements, into, leading, near, number, own, pair, real, size_of_elements, what, whole
+from ._arrays import Array, complex_numbers, elements, into, leading, near, number, own, pair, real, size_of_elements, what, whole
 from ._errors import ArgumentError
 from ._types import Matrices, Real, Whole
 
@@ -219,4 +219,4 @@ def expm(
         array = real("A", A)  # rows of different lengths: it raises
     if array.dtype.kind != "c":
         return _lieflow.expm(A, structure, threads, out)
-    return into(_lieflow.expm_complex(np.asarray(array, dtype=np.complex128, order="C"), structure, threads), out)
+    return into(_lieflow.expm_complex(complex_numbers("A", A), structure, threads), out)

@@ -13,13 +13,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _lieflow
-from ._arrays import Array, finite, kept, name_of, number, own, real, what
+from ._arrays import Array, complex_numbers, finite, kept, name_of, number, own, real, what
 from ._errors import ArgumentError
 from ._fields import Quantities, Samples, State
 from ._result import Layout
 from ._types import Real
 from ._unchanging import Unchanging
-from ._unitary import ComplexState, complex_numbers
+from ._unitary import ComplexState
 from ._values import alike, is_complex, part, plain
 
 #: Numbers may be formulas of the parameters, as in ``["5*deg", 0, "w"]``.

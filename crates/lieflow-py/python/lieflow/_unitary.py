@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._arrays import finite, into, leading, near, pair, quaternions, real, series, size_of_elements, what, whole
+from ._arrays import complex_numbers, finite, into, leading, near, pair, quaternions, series, size_of_elements, whole
 from ._errors import ArgumentError
 from ._groups import Group, expm, size_of, tolerance
 from ._types import Real, Whole
@@ -38,19 +38,6 @@ def of_rotation(group: Any, y: Any) -> Any:
     if hasattr(y, "as_quat") and isinstance(group, str) and _plain(group) in ("s3", "su2"):
         return quaternions(y)
     return y
-
-
-def complex_numbers(name: str, x: Any) -> Complex:
-    """Return x as an array of complex128 in C order. Raise TypeError if it has other things than numbers."""
-    try:
-        array = np.asarray(x)
-    except ValueError:
-        array = real(name, x)  # rows of different lengths: it raises
-    if array.dtype.kind != "c":
-        if array.dtype.kind not in "fiub":
-            raise TypeError(f"{name}: {what(x)}, expected complex numbers")
-        array = real(name, array)
-    return np.array(array, dtype=np.complex128, order="C", subok=False)
 
 
 class ComplexPoints:
