@@ -375,3 +375,25 @@ def test_a_rotation_is_a_quaternion_where_points_are(group):
     assert np.array_equal(stepper.y, q)
     stepper.y = half
     assert np.array_equal(stepper.y, np.roll(half.as_quat(), 1))
+
+
+def test_numbers_of_every_type_are_numbers():
+    """Those of NumPy's types, as formulas and as keys of problems."""
+
+    def end(*rates, group="SO(3)"):
+        return [lf.solve_ivp(lf.Field(group, rate), (0, 1), np.eye(int(group[3])), frame="body").y_end for rate in rates]
+
+    first, *others = end(["0.5", 0, "1"], [np.float32(0.5), np.int64(0), "1"], np.array([0.5, 0, 1]), np.longdouble([0.5, 0, 1]))
+    assert all(np.array_equal(first, other) for other in others)
+    m = 0.25 * np.array([[0, 1, 2, 3], [-1, 0, 4, 5], [-2, -4, 0, 6], [-3, -5, -6, 0]])
+    first, *others = end(m.tolist(), m, list(m), np.float32(m), group="SO(4)")
+    assert all(np.array_equal(first, other) for other in others)
+
+    body = lf.RigidBody(inertia=[1, 2, 3], omega_body=[0.5, 1, 0])
+    wide = lf.RigidBody(inertia=np.longdouble([1, 2, 3]), omega_body=[np.longdouble(0.5), np.float16(1), np.uint8(0)])
+    assert body == wide and all(type(x) is float for x in wide.keys["inertia"])
+    pandas = pytest.importorskip("pandas")
+    h = np.array([[0.5, 1j], [-1j, 0.25]])
+    state = lf.Schrodinger(hamiltonian=h, amplitudes=[1, 0])
+    for same in (h.tolist(), h.astype(np.clongdouble), pandas.DataFrame(h), [list(row) for row in h.astype(np.complex64)]):
+        assert lf.Schrodinger(hamiltonian=same, amplitudes=[1, 0]) == state

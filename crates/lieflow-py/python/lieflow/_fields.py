@@ -15,6 +15,7 @@ from ._arrays import Array, finite, kept, name_of, own, real
 from ._errors import ArgumentError, together
 from ._groups import Group
 from ._unchanging import Constants, Unchanging, unchanging
+from ._values import plain
 
 __all__ = ["CFunction", "Field", "Parts", "Quantities", "Samples"]
 
@@ -400,6 +401,7 @@ class Field(Unchanging):
         return kept(self._made, made, lambda: self._read(texts, shape, value, is_complex))
 
     def _read(self, texts: Any, shape: tuple[int, ...], value: tuple[int, ...], is_complex: bool) -> _lieflow.Formulas:
+        texts = plain("field", texts)
         if isinstance(self.group, Parts):
             columns = self.group.columns()
         elif is_complex:
@@ -413,7 +415,7 @@ class Field(Unchanging):
             entries, counts = [texts[name] for name in places], [p[1].stop - p[1].start for p in places.values()]
         else:
             flat = texts
-            if len(value) == 2 and isinstance(texts, (list, tuple)) and texts and isinstance(texts[0], (list, tuple)):
+            if len(value) == 2 and isinstance(texts, list) and texts and isinstance(texts[0], list):
                 flat = [text for row in texts for text in row]
             entries, counts, names = [flat], [int(np.prod(value, dtype=int))], None
             row = value[1] if flat is not texts else 0
@@ -427,7 +429,7 @@ class Field(Unchanging):
                 constants[constant] = float(number)
         keys["parameters"] = constants
         if self.let:
-            keys["let"] = self.let
+            keys["let"] = plain("let", self.let)
         if self.samples is not None:
             keys["samples"] = list(self.samples.as_file())
             keys["interpolation"] = self.samples.interpolation

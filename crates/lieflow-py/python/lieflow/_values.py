@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 
 from ._arrays import quaternions
-from ._fields import Samples
 
 __all__ = ["alike", "is_complex", "part", "plain"]
 
@@ -17,7 +16,7 @@ def is_complex(x: Any) -> bool:
     """Is x a complex number, or are some in it?"""
     if isinstance(x, (list, tuple)):
         return any(is_complex(entry) for entry in x)
-    return isinstance(x, complex) or isinstance(x, (np.ndarray, np.generic)) and x.dtype.kind == "c"
+    return isinstance(x, complex) or hasattr(x, "__array__") and np.asarray(x).dtype.kind == "c"
 
 
 def part(x: Any, name: str) -> Any:
@@ -26,6 +25,8 @@ def part(x: Any, name: str) -> Any:
         return [part(entry, name) for entry in x]
     if isinstance(x, str):
         return x if name == "real" else 0.0
+    if hasattr(x, "__array__") and not isinstance(x, np.ndarray):
+        x = np.asarray(x)
     return getattr(x, name)
 
 
@@ -44,11 +45,14 @@ def plain(name: str, x: Any) -> Any:
         return x
     if isinstance(x, (str, float, int)):  # of NumPy, or an enumeration
         return next(kind(x) for kind in (str, float, int) if isinstance(x, kind))
-    if isinstance(x, Samples):
+    if hasattr(x, "as_file"):  # Samples
         return list(x.as_file())
     if isinstance(x, np.ndarray) or isinstance(x, np.generic):
         if x.dtype.kind not in "fiubU":
             raise TypeError(f"{name}: an array of {x.dtype}, expected real numbers")
+        if x.dtype.kind == "f":  # a longdouble is no float of Python
+            with np.errstate(over="ignore"):
+                x = np.asarray(x, dtype=np.float64)
         return x.tolist()
     if isinstance(x, Mapping):
         return {str(key): plain(f"{name}.{key}", value) for key, value in x.items()}
