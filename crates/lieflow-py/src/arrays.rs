@@ -4,7 +4,7 @@ use core::ops::Range;
 use std::time::Instant;
 
 use lieflow::Error;
-use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
+use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArray, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
@@ -24,8 +24,15 @@ pub(crate) struct Input<'py> {
     tail: usize,
 }
 
+/// The array as it is, if its numbers can be read as a slice and all of them count: those of a class other than NumPy's own
+/// may be masked.
+pub(crate) fn unmasked<'py>(x: &Bound<'py, PyAny>) -> Option<Bound<'py, PyArrayDyn<f64>>> {
+    x.cast_exact::<PyUntypedArray>().ok()?;
+    plain(x)
+}
+
 /// The array as it is, if its numbers can be read as a slice.
-pub(crate) fn plain<'py>(x: &Bound<'py, PyAny>) -> Option<Bound<'py, PyArrayDyn<f64>>> {
+fn plain<'py>(x: &Bound<'py, PyAny>) -> Option<Bound<'py, PyArrayDyn<f64>>> {
     let array = x.cast::<PyArrayDyn<f64>>().ok()?;
     let aligned = (array.data() as usize).is_multiple_of(align_of::<f64>());
     (array.is_c_contiguous() && aligned).then(|| array.clone())
@@ -64,7 +71,7 @@ impl<'py> Input<'py> {
 
     /// The argument `name` with at least so many axes.
     pub(crate) fn any(name: &str, x: &Bound<'py, PyAny>, axes: usize) -> PyResult<Self> {
-        let array = match plain(x) {
+        let array = match unmasked(x) {
             Some(array) => array,
             None => {
                 let real = x.py().import("lieflow._arrays")?.getattr("real")?;

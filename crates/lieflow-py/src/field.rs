@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use pyo3::pyclass::{PyTraverseError, PyVisit};
 use pyo3::types::{PyFloat, PyList, PyTuple};
 
-use crate::arrays::plain;
+use crate::arrays::unmasked;
 
 /// The first exception of the callables of a run, the flag that ends the run, and the calls of f.
 #[derive(Default)]
@@ -169,7 +169,7 @@ fn read_value(
     shape: &[usize],
     out: &mut [f64],
 ) -> PyResult<()> {
-    if let Some(array) = plain(value)
+    if let Some(array) = unmasked(value)
         && array.shape() == shape
     {
         // SAFETY: the array is in C order and aligned, and nothing runs that could change it while it is read.

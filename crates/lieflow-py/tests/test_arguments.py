@@ -397,3 +397,40 @@ def test_numbers_of_every_type_are_numbers():
     state = lf.Schrodinger(hamiltonian=h, amplitudes=[1, 0])
     for same in (h.tolist(), h.astype(np.clongdouble), pandas.DataFrame(h), [list(row) for row in h.astype(np.complex64)]):
         assert lf.Schrodinger(hamiltonian=same, amplitudes=[1, 0]) == state
+
+
+def masked(x, kind=float):
+    array = np.ma.array(x, dtype=kind)
+    array[(0,) * array.ndim] = np.ma.masked
+    return array
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda: lf.so3.exp(masked([1, 2, 3])), "u: "),
+        (lambda: lf.expm(masked(np.zeros((2, 2)))), "A: "),
+        (lambda: lf.expm(masked(np.zeros((2, 2)), complex)), "A: "),
+        (lambda: lf.U(2).exp(masked(np.zeros((2, 2)), complex)), "u: "),
+        (lambda: lf.Samples([0, 1], masked([1, 2])), "values: "),
+        (lambda: lf.Samples(masked([0, 1]), [1, 2]), "t: "),
+        (lambda: lf.solve_ivp(turn, (0, 1), masked(np.eye(3)), **ROTATION), "y0: "),
+        (lambda: lf.solve_ivp(lambda t, y: masked([1, 2, 3]), (0, 1), np.eye(3), **ROTATION), "f returned "),
+        (lambda: lf.solve_ivp(lambda t, y: masked([[1j]], complex), (0, 1), [[1]], group="U(1)", frame="body"), "f at t = 0.0: "),
+        (lambda: lf.RigidBody(inertia=masked([1, 2, 3]), omega_body=[0, 1, 0]), "inertia: "),
+        (lambda: lf.Schrodinger(hamiltonian=masked([[0, 1j], [-1j, 0]], complex), amplitudes=[1, 0]), "hamiltonian: "),
+        (lambda: lf.solve_ivp(lf.Field("SO(3)", masked([1, 2, 3])), (0, 1), np.eye(3), frame="body"), "field: "),
+    ],
+)
+def test_a_masked_entry_is_refused(call, words):
+    with pytest.raises(TypeError, match=f"^{words}an array with a masked entry") as caught:
+        call()
+    assert "expected" in str(caught.value)
+
+
+def test_arrays_of_other_classes_are_read():
+    x = np.array([0.1, -0.2, 0.3])
+    for same in (np.ma.array(x), np.ma.array(x, mask=False), x.view(type("Own", (np.ndarray,), {}))):
+        assert np.array_equal(lf.so3.exp(same), lf.so3.exp(x)) and type(lf.so3.exp(same)) is np.ndarray
+        run = lf.solve_ivp(lambda t, y: same, (0, 1), np.eye(3), **ROTATION)  # noqa: B023, called here
+        assert np.abs(run.y_end - lf.so3.exp(x)).max() < 1e-14

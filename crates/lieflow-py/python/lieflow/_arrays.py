@@ -17,7 +17,7 @@ from ._errors import ArgumentError
 from ._types import Matrices, Whole
 
 __all__ = [
-    "common", "complex_numbers", "elements", "finite", "first", "into", "kept", "leading", "MEMBERSHIP",
+    "common", "complex_numbers", "elements", "finite", "first", "into", "is_masked", "kept", "leading", "MEMBERSHIP",
     "name_of", "near", "number", "own", "pair", "read_only", "real", "series", "size_of_elements", "together", "value", "what", "whole", "wrong_out",
 ]
 
@@ -48,6 +48,8 @@ def what(x: Any) -> str:
         return "a number beyond the range of float64"
     if not isinstance(x, np.ndarray):
         return f"a value of type {type(x).__name__}"
+    if is_masked(x):
+        return "an array with a masked entry"
     if x.dtype.kind == "c":
         return f"complex numbers (an array of {x.dtype})"
     if x.dtype.kind in "US":
@@ -62,8 +64,15 @@ def _is_real(x: Any) -> bool:
     return isinstance(x, Real) and not isinstance(x, str)
 
 
+def is_masked(x: Any) -> bool:
+    """Is x an array with an entry that does not count?"""
+    return isinstance(x, np.ndarray) and type(x) is not np.ndarray and bool(np.ma.is_masked(x))
+
+
 def _numbers(x: Any) -> Array | None:
     """Return x as an array of float64 in C order, or None if it has other things than real numbers."""
+    if is_masked(x):
+        return None
     if hasattr(x, "as_matrix"):  # SciPy's Rotation and RigidTransform
         x = x.as_matrix()
     try:
@@ -100,7 +109,7 @@ def complex_numbers(name: str, x: Any) -> NDArray[np.complex128]:
         array = np.asarray(x)
     except ValueError:
         array = real(name, x)  # rows of different lengths: it raises
-    if array.dtype.kind not in "cfiub":
+    if array.dtype.kind not in "cfiub" or is_masked(x):
         raise TypeError(f"{name}: {what(x)}, expected complex numbers")
     array = np.asarray(array, dtype=np.complex128, order="C")
     return array if array.flags.aligned else array.copy()

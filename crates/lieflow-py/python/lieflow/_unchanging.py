@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ._arrays import read_only
+from ._arrays import is_masked, read_only
 
 __all__ = ["Constants", "Unchanging", "unchanging"]
 
@@ -61,5 +61,5 @@ def unchanging(x: Any, refusal: str) -> Any:
     if hasattr(x, "as_matrix"):  # SciPy's Rotation
         x = x.as_matrix()
     if hasattr(x, "__array__") and not isinstance(x, np.generic):
-        return read_only(np.array(x))
+        return read_only(np.array(x, subok=is_masked(x)))  # a reader refuses what is masked
     return copy.deepcopy(x)

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ._arrays import quaternions
+from ._arrays import is_masked, quaternions, what
 
 __all__ = ["alike", "is_complex", "part", "plain"]
 
@@ -48,6 +48,8 @@ def plain(name: str, x: Any) -> Any:
     if hasattr(x, "as_file"):  # Samples
         return list(x.as_file())
     if isinstance(x, np.ndarray) or isinstance(x, np.generic):
+        if is_masked(x):
+            raise TypeError(f"{name}: {what(x)}, expected real numbers")
         if x.dtype.kind not in "fiubU":
             raise TypeError(f"{name}: an array of {x.dtype}, expected real numbers")
         if x.dtype.kind == "f":  # a longdouble is no float of Python
