@@ -82,6 +82,11 @@ def test_integers_of_any_size_and_fractions_are_numbers():
         (lambda: lf.so3.random("a"), TypeError, "size: 'a'"),
         (lambda: lf.so3.random(-1), lf.ArgumentError, "size: -1"),
         (lambda: lf.CFunction(2**70), lf.ArgumentError, "fun: the address 118"),
+        (lambda: lf.solve_ivp(lambda t, y: [[1j]], (0, 1), 1 + 0j, group="U(1)", action="linear"), lf.ArgumentError, "y0: "),
+        (lambda: lf.solve_ivp(lambda t, y: 1j, (0, 1), [[1], [1, 2]], group="SU(2)", frame="body"), TypeError, "y0: rows of diff"),
+        (lambda: lf.Schrodinger(hamiltonian=[[None, 1j], [-1j, 0]], amplitudes=[1, 0]), TypeError, r"hamiltonian\[0\]\[0\]: a value"),
+        (lambda: lf.solve_ivp(lf.Field("SO(3)", [0, None, 0]), (0, 1), np.eye(3), frame="body"), TypeError, r"^field\[1\]: a value"),
+        (lambda: lf.Parts(a="numbers ²"), lf.ArgumentError, "a: 'numbers ²', expected"),
     ],
 )
 def test_an_argument_of_another_kind_is_named(call, error, words):

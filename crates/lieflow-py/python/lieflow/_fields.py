@@ -247,7 +247,7 @@ class Parts(Unchanging):
                 sizes[name] = (9, 3, (3, 3))
             elif space == "number":
                 sizes[name] = (1, 1, ())
-            elif word == "numbers" and count.isdigit() and int(count) > 0:
+            elif word == "numbers" and count.isdecimal() and int(count) > 0:
                 sizes[name] = (int(count), int(count), (int(count),))
             else:
                 raise ArgumentError(name, repr(space), '"rotation", "vector", "number" or "numbers k"')

@@ -22,7 +22,7 @@ from ._result import Layout, OdeSolution, Result, warn_of_events
 from ._second_run import Repeated, beyond, changed, second
 from ._settings import args_of, check_stops, settings_of, span_of, times_of
 from ._types import Args, Flag, Matrices, Real, Span, Whole
-from ._unitary import ComplexPoints, ComplexState, Unitary, is_su2, is_unitary_name, of_rotation
+from ._unitary import ComplexPoints, ComplexState, Unitary, four_numbers, is_su2, is_unitary_name, of_rotation
 
 __all__ = ["solve_ivp"]
 
@@ -66,7 +66,7 @@ class Ready:
         self.layout: Parts | ComplexPoints | None = self.parts
         if isinstance(group, Unitary) or isinstance(group, str) and is_unitary_name(group):
             # SU(2) is the group of unit quaternions, too.
-            if isinstance(group, Unitary) or np.shape(y0) != (4,) or not is_su2(group):
+            if isinstance(group, Unitary) or not is_su2(group) or not four_numbers(y0):
                 self.layout = ComplexPoints()
         start = real("y0", y0) if self.layout is None else self.layout.join("y0", y0, True)
         name: Any = group

@@ -33,6 +33,14 @@ def is_su2(name: str) -> bool:
     return _plain(name) == "su2"
 
 
+def four_numbers(y: Any) -> bool:
+    """Return True for what has the shape of a quaternion."""
+    try:
+        return bool(np.shape(y) == (4,))
+    except ValueError:  # rows of different lengths
+        return False
+
+
 def of_rotation(group: Any, y: Any) -> Any:
     """Return the quaternion of SciPy's Rotation, where the group is that of unit quaternions. Return another y as it is."""
     if hasattr(y, "as_quat") and isinstance(group, str) and _plain(group) in ("s3", "su2"):
@@ -61,7 +69,7 @@ class ComplexPoints:
             raise TypeError(f"{name}: an array of shape {array.shape}, expected complex numbers of shape {shape}")
         if point:
             finite(name, array)
-        return array.view(np.float64).reshape(*array.shape, 2)
+        return array.reshape(*array.shape, 1).view(np.float64)
 
 
 class ComplexState:

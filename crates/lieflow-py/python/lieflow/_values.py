@@ -20,14 +20,12 @@ def is_complex(x: Any) -> bool:
 
 
 def part(x: Any, name: str) -> Any:
-    """Return the part ``"real"`` or ``"imag"`` of the numbers in x. A text is a real formula."""
+    """Return the part ``"real"`` or ``"imag"`` of the numbers in x. What is no number, such as a formula, is real."""
     if isinstance(x, (list, tuple)):
         return [part(entry, name) for entry in x]
-    if isinstance(x, str):
-        return x if name == "real" else 0.0
     if hasattr(x, "__array__") and not isinstance(x, np.ndarray):
         x = np.asarray(x)
-    return getattr(x, name)
+    return getattr(x, name, x if name == "real" else 0.0)
 
 
 def alike(x: Any) -> str:
@@ -41,7 +39,7 @@ def alike(x: Any) -> str:
 
 def plain(name: str, x: Any) -> Any:
     """Return x as numbers, texts, lists and dicts. Raise TypeError for what is none of them."""
-    if x is None or type(x) in (str, bool, int, float):
+    if type(x) in (str, bool, int, float):
         return x
     if isinstance(x, (str, float, int)):  # of NumPy, or an enumeration
         return next(kind(x) for kind in (str, float, int) if isinstance(x, kind))
