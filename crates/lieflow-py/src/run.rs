@@ -12,7 +12,7 @@ use lieflow_model::scene::{beside_fixed_steps, default_tolerances};
 use lieflow_model::schema::Row;
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyInt};
 
 use crate::error::{argument, of_run, refused};
 use crate::field::{self, Callable, Raised};
@@ -188,13 +188,18 @@ impl Rows {
     }
 }
 
+/// The number of an integer. A callable with `__index__` is none.
+pub(crate) fn integer(x: &Bound<'_, PyAny>) -> PyResult<usize> {
+    x.cast::<PyInt>()?.extract()
+}
+
 /// The function of an event.
 #[derive(FromPyObject)]
 pub(crate) enum EventFunction {
     /// Formulas in t and the numbers of y.
     Formulas(Py<Formulas>),
     /// The number of a formula of the columns of a model.
-    Column(usize),
+    Column(#[pyo3(from_py_with = integer)] usize),
     /// A callable.
     Callable(Py<PyAny>),
 }

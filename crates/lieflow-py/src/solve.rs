@@ -17,7 +17,9 @@ use crate::curve::{Curve, at_times};
 use crate::error::{argument, refused, words};
 use crate::field::{self, Callable, Raised};
 use crate::formulas::Formulas;
-use crate::run::{EventParts, Fitting, LONGEST, Settings, Watch, Watching, save_of, spec_of};
+use crate::run::{
+    EventParts, Fitting, LONGEST, Settings, Watch, Watching, integer, save_of, spec_of,
+};
 use crate::stepper::Stepper;
 
 /// The space of a run: a group, an action, and the shapes of y and f.
@@ -178,7 +180,7 @@ pub(crate) fn near_ends(py: Python<'_>, t_span: [f64; 2], dt: f64) -> PyResult<V
 pub(crate) enum FieldParts {
     Formulas(Py<Formulas>),
     Samples(Py<SampledField>),
-    Address(usize, Vec<f64>),
+    Address(#[pyo3(from_py_with = integer)] usize, Vec<f64>),
     Callable(Py<PyAny>, Vec<Py<PyAny>>),
 }
 

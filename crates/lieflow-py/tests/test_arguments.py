@@ -439,3 +439,19 @@ def test_arrays_of_other_classes_are_read():
         assert np.array_equal(lf.so3.exp(same), lf.so3.exp(x)) and type(lf.so3.exp(same)) is np.ndarray
         run = lf.solve_ivp(lambda t, y: same, (0, 1), np.eye(3), **ROTATION)  # noqa: B023, called here
         assert np.abs(run.y_end - lf.so3.exp(x)).max() < 1e-14
+
+
+def test_a_callable_that_is_also_an_integer_is_called():
+    class Both:
+        def __init__(self, f):
+            self.f = f
+
+        def __call__(self, *args):
+            return self.f(*args)
+
+        def __index__(self):
+            return 0
+
+    event = Both(lambda t, y: t - 0.5)
+    for fun, y0, options in ((turn, np.eye(3), ROTATION), (Both(turn), np.eye(3), ROTATION), (BODY, None, {})):
+        assert np.allclose(lf.solve_ivp(fun, (0, 1), y0, events=event, **options).t_events[0], [0.5])
