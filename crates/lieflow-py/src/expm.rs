@@ -220,7 +220,7 @@ fn in_threads<T: Copy + Send + Sync>(
             .collect();
         let mut first = Ok(());
         for part in running {
-            let done = part.join().unwrap_or(Ok(()));
+            let done = part.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
             first = first.and(done);
         }
         first
