@@ -217,7 +217,7 @@ impl PaperMethod {
         })
     }
 
-    /// The CPU time of a run, which is repeated until all have taken `shortest` seconds.
+    /// The CPU time of a run, which is repeated until `shortest` seconds are over.
     ///
     /// # Errors
     /// As [`run`](Self::run).
@@ -306,13 +306,11 @@ fn seconds<P: Seen + 'static>(
     grid: &TimeGrid,
     shortest: f64,
 ) -> Result<f64, RunError> {
-    let mut outcome = Ok(());
-    let seconds = seconds_of(shortest, || {
+    seconds_of(shortest, || {
         let mut y = start.clone();
         let see = |_, y: &PointOf<P>| {
             core::hint::black_box(y);
         };
-        outcome = integrate(problem, &method, grid, &SaveAt::Ends, &mut y, see).map(|_| ());
-    });
-    outcome.map(|()| seconds)
+        integrate(problem, &method, grid, &SaveAt::Ends, &mut y, see).map(|_| ())
+    })
 }

@@ -36,7 +36,7 @@ use lieflow::catalog::MethodSpec;
 use lieflow_model::problem::{Layer, Model};
 use lieflow_model::scene::Scene;
 use lieflow_model::schema::Row;
-use lieflow_timing::{cpu_seconds, median};
+use lieflow_timing::{cpu_seconds, median, seconds_of};
 
 /// How large the steps of a run are.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -443,19 +443,10 @@ impl Size {
         let mut see = |_: f64, row: Row<'_>| {
             core::hint::black_box(row.values());
         };
-        let mut seconds = |repeats: u32| {
-            let start = cpu_seconds();
-            for _ in 0..repeats {
-                self.run(model, method, (course, course.t_span[1]), rows, None, &mut see)?;
-            }
-            Ok::<_, String>((cpu_seconds() - start) / f64::from(repeats))
-        };
-        // The first time finds cold caches, which a short run cannot repay.
-        let took = seconds(1)?;
-        match took < shortest {
-            true => seconds((shortest / took.max(1e-9)).ceil() as u32),
-            false => Ok(took),
-        }
+        seconds_of(shortest, || {
+            let until = (course, course.t_span[1]);
+            self.run(model, method, until, rows, None, &mut see).map(|_| ())
+        })
     }
 }
 
