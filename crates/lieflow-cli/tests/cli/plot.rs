@@ -55,6 +55,23 @@ fn a_scene_decides_its_figures_their_order_and_their_words() {
     }
 }
 
+/// The parts of a quantity and the next figure have files of their own.
+#[test]
+fn parts_of_a_figure_and_the_next_figure_have_different_names() {
+    let folder = Folder::new();
+    let asked = "output.plot=[\"momentum_body\", \"energy\"]";
+    folder.lieflow(&["run", "many-bodies", "--set", asked, "--out", "out"]).ok();
+    let page = folder.read("out/index.html");
+    for name in ["plot", "plot-part-2", "plot-part-3", "plot-part-4"] {
+        assert_eq!(page.matches(&format!("id=\"{name}\"")).count(), 1, "{name}");
+        assert!(folder.read(&format!("out/{name}.svg")).contains("momentum"), "{name}");
+    }
+    let ids = page.split(" id=\"").skip(1).filter_map(|rest| rest.split('"').next());
+    let mut ids: Vec<&str> = ids.collect();
+    ids.sort_unstable();
+    assert!(ids.windows(2).all(|pair| pair[0] != pair[1]), "{ids:?}");
+}
+
 /// Names of formulas are figures in their order: a vector is one, others are not joined by what their names share. The
 /// words of a scene stay, also where a figure hardly changes or another formula is large.
 #[test]

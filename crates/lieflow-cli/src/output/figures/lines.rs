@@ -74,7 +74,8 @@ pub(super) fn against_time(
 ) -> Vec<Drawn> {
     let parts =
         parts_of(kind, quantity, wanted, &summary.unit_names).into_iter().take(CHARTS).enumerate();
-    let id = |place| if place == 0 { id.into() } else { format!("{id}-{}", place + 1) };
+    // With a word: `plot-2` is the second figure that a scene asks for.
+    let id = |place| if place == 0 { id.into() } else { format!("{id}-part-{}", place + 1) };
     let mut figures: Vec<Drawn> =
         parts.map(|(place, shown)| figure(&id(place), &shown, rows, summary)).collect();
     // A quantity of several parts that are all constant has one line.
