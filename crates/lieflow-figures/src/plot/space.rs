@@ -2,12 +2,12 @@
 
 use super::camera::{Camera, HEIGHT, Vec3, WIDTH, norm};
 use super::labels::{self, ROW};
-use super::scale::{Axis, nice_step};
+use super::scale::{Axis, Map, nice_step};
 use super::sphere::Path;
 use super::svg::{Opening, polyline, px, slug, text, text_width};
 use super::theme;
 use super::thin::thin_path;
-use crate::number::short;
+use crate::number::{short, time_or};
 
 /// The frame that the box fills.
 const FRAME: [(f64, f64); 2] = [(78.0, 52.0), (452.0, 396.0)];
@@ -21,6 +21,8 @@ const TICKS: f64 = 5.0;
 /// The distance of numbers and of the names of axes from the box, in pixels.
 const NUMBER: f64 = 16.0;
 const NAME: f64 = 40.0;
+/// Half of a name up to which that distance is enough, in pixels.
+const SHORT: f64 = 20.0;
 
 /// A picture of paths in space in orthographic projection, with their shadows on the floor of a box. A length has the same
 /// size along all three axes. The start of a path is a ring, and its end a dot.
@@ -111,15 +113,24 @@ impl Frame {
         (self.origin.0 + self.scale * x, self.origin.1 - self.scale * y)
     }
 
-    /// The numbers that an axis shows.
-    fn ticks(&self, axis: usize) -> Vec<f64> {
+    /// The ticks of an axis: where they are, and their numbers in the units of its map.
+    fn ticks(&self, axis: usize, map: &Map) -> Vec<(f64, f64)> {
         let sides: Vec3 = std::array::from_fn(|i| self.hi[i] - self.lo[i]);
         // One step for all axes, so that the lines are squares, but for an axis that is short.
         let step = nice_step(sides.iter().copied().fold(0.0, f64::max) / TICKS);
         let step = if sides[axis] < 2.0 * step { nice_step(sides[axis] / 4.0) } else { step };
         let first = (self.lo[axis] / step).ceil();
         let count = (self.hi[axis] / step).floor() - first;
-        (0..=count.clamp(-1.0, 50.0) as i64).map(|k| (first + k as f64) * step).collect()
+        let tick = |k: i64| {
+            let value = (first + k as f64) * step;
+            (value, ((value - map.offset) / step).round() * step / 10f64.powi(map.power))
+        };
+        (0..=count.clamp(-1.0, 50.0) as i64).map(tick).collect()
+    }
+
+    /// What the numbers of an axis leave out, as in a chart in the plane.
+    fn map(&self, axis: usize, of: &Axis) -> Map {
+        of.map([self.lo[axis], self.hi[axis]].into_iter(), (0.0, 1.0), 0.0)
     }
 
     /// The point of the box with one coordinate, and the others at the lower (`false`) or the upper end.
@@ -210,9 +221,9 @@ impl Space {
                 0.3.. => "start",
                 _ => "middle",
             };
-            let ticks = frame.ticks(axis);
+            let map = frame.map(axis, &self.axes[axis]);
             let mut widest: f64 = 0.0;
-            for &value in &ticks {
+            for (value, number) in frame.ticks(axis, &map) {
                 for other in (0..3).filter(|other| *other != axis) {
                     // On the wall or on the floor that this axis and the other one span.
                     let ends = [frame.lo[other], frame.hi[other]].map(|end| {
@@ -222,18 +233,25 @@ impl Space {
                     });
                     lines += &polyline(&ends);
                 }
-                let number = short(value, 6);
+                let number = short(number, 6);
                 widest = widest.max(text_width(&number, 12.0));
                 let (x, y) = edge(value);
                 let at = (x + 0.55 * NUMBER * ux, y + NUMBER * uy.max(0.0) + 4.0);
                 words += &text("lf-tick", at, anchor, &number);
             }
-            let title = self.axes[axis].title_with_unit();
+            let title = self.axes[axis].title_beside(&map);
             if axis == 2 {
                 words += &text("lf-name", (to.0, to.1 - 14.0), "middle", &title);
                 continue;
             }
-            let away = if anchor == "middle" { NAME } else { NAME.max(widest * ux.abs() + 14.0) };
+            let away = match anchor {
+                // Below the numbers, which are lower at one end of a long name.
+                "middle" => {
+                    let more = (text_width(&title, 12.0) / 2.0 - SHORT).max(0.0);
+                    NAME + more * (ux / uy).abs()
+                }
+                _ => NAME.max(widest * ux.abs() + 14.0),
+            };
             let at = (middle.0 + away * ux, middle.1 + away * uy + 4.0);
             words += &text("lf-name", at, anchor, &title);
         }
@@ -256,7 +274,8 @@ impl Space {
 
     fn description(&self, frame: &Frame) -> String {
         let ranges = self.axes.iter().enumerate().map(|(i, axis)| {
-            let (lo, hi) = (short(frame.lo[i], 4), short(frame.hi[i], 4));
+            let ends = [frame.lo[i], frame.hi[i]];
+            let [lo, hi] = ends.map(|end| time_or(end, ends, |end| short(end, 4)));
             format!("{} from {lo} to {hi}", axis.title_with_unit())
         });
         format!(
@@ -320,7 +339,8 @@ mod tests {
             let squares: f64 = lengths.iter().map(|x| x * x).sum();
             assert!((squares / (2.0 * (1e-3 * far * frame.scale).powi(2)) - 1.0).abs() < 1e-6);
             for axis in 0..3 {
-                let ticks = frame.ticks(axis);
+                let map = frame.map(axis, &Axis::linear("x"));
+                let ticks: Vec<f64> = frame.ticks(axis, &map).into_iter().map(|t| t.0).collect();
                 assert!((2..12).contains(&ticks.len()), "{axis}: {ticks:?}");
                 let inside = |x: &f64| (frame.lo[axis]..=frame.hi[axis]).contains(x);
                 assert!(ticks.iter().all(inside), "{axis}: {ticks:?}");
@@ -341,6 +361,23 @@ mod tests {
         assert!(up.1 < start.1 - 20.0 && (up.0 - start.0).abs() < 0.2, "{start:?} {up:?}");
         let [first, second] = [to([1.0, 0.0, 0.0]), to([0.0, 1.0, 0.0])];
         assert!(first.0 < start.0 && second.0 > start.0 && first.1 > start.1 && second.1 > start.1);
+    }
+
+    /// Two numbers of an axis are never the same: what they share is beside its name.
+    #[test]
+    fn numbers_far_from_the_origin_leave_out_what_they_share() {
+        let far = [[4_206_980.0, -3.0, 2e-9], [4_207_020.0, 17.0, 2e-9]];
+        let svg = space(far.into()).svg();
+        let of_tick = |rest: &str| rest.split(['>', '<']).nth(1).map(str::to_string);
+        let mut axes = svg.split("class=\"lf-name\"");
+        for _ in 0..3 {
+            let ticks = axes.next().unwrap().split("class=\"lf-tick\"").skip(1);
+            let numbers: Vec<String> = ticks.filter_map(of_tick).collect();
+            assert!(numbers.len() > 1, "{numbers:?}");
+            assert!(numbers.windows(2).all(|pair| pair[0] != pair[1]), "{numbers:?}");
+        }
+        assert!(svg.contains("x &amp; y − 4.207×10⁶<") && svg.contains(">y<"), "{svg}");
+        assert!(svg.contains("x &amp; y from 4206978 to 4207022"), "{svg}");
     }
 
     #[test]
