@@ -53,12 +53,20 @@ impl Experiment {
     /// The end of the energy runs.
     pub const END: f64 = 400.0;
 
+    /// The steps of the energy runs.
+    ///
+    /// # Errors
+    /// A step that cannot be.
+    pub fn grid(&self) -> Result<TimeGrid, RunError> {
+        Ok(TimeGrid::new([0.0, Self::END], self.dt)?)
+    }
+
     /// The energy along a run of each method.
     pub fn energy(
         &self,
         methods: impl IntoIterator<Item = PaperMethod>,
     ) -> Result<Vec<EnergyRun>, RunError> {
-        let grid = TimeGrid::new([0.0, Self::END], self.dt)?;
+        let grid = self.grid()?;
         methods.into_iter().map(|method| energy_run(&self.body, method, &grid)).collect()
     }
 }

@@ -6,9 +6,9 @@ mod page;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use lieflow::SaveAt;
 use lieflow::check::Finding;
 use lieflow::groups::{LieGroup, So3};
+use lieflow::{SaveAt, TimeGrid};
 use lieflow_figures::Body;
 use lieflow_figures::number::{or_dash, scientific, seconds, sig};
 use lieflow_model::problem::Layer;
@@ -168,7 +168,7 @@ impl Outcome {
         let run = |energy: EnergyRun| {
             let layers_differ = match energy.method {
                 PaperMethod::Rk4 => f64::NAN,
-                row => layers_differ(&scene, row)?,
+                row => layers_differ(&scene, &experiment.grid()?, row)?,
             };
             Ok(LongRun {
                 label: candidate(energy.method, Layer::Closed).label(),
@@ -261,13 +261,13 @@ fn rounds(quick: bool) -> u32 {
     if quick { 3 } else { 9 }
 }
 
-/// The relative difference of the momentum at the end of the scene's span between the layers.
-fn layers_differ(scene: &Scene, row: PaperMethod) -> Result<f64, CliError> {
+/// The relative difference of the momentum at the end of these steps between the layers.
+fn layers_differ(scene: &Scene, grid: &TimeGrid, row: PaperMethod) -> Result<f64, CliError> {
     let mut ends = [[0.0; 3]; 2];
     for (layer, end) in Layer::ALL.into_iter().zip(&mut ends) {
         let model = scene.model_with(layer, &["momentum_body"])?;
         let method = candidate(row, layer).method;
-        model.run(&method, &scene.grid, &SaveAt::Ends, &mut |_, row| {
+        model.run(&method, grid, &SaveAt::Ends, &mut |_, row| {
             end.copy_from_slice(row.values());
         })?;
     }
