@@ -51,7 +51,9 @@ fn in_short(paper: &Paper) -> Vec<Block> {
             ("Machine", machine()),
             (
                 "Times",
-                "CPU time of one thread, medians of rounds that visit every method in turn".into(),
+                "CPU time of one thread. In Table 4 and Figure 5 it is the median of rounds that visit every method \
+                 in turn. In Figures 3 and 4 it is that of one run, which computes the energy after each step."
+                    .into(),
             ),
         ]),
         Block::fold(
@@ -190,7 +192,7 @@ fn table3(paper: &Paper) -> Vec<Block> {
             "J⁻¹ = diag(1, 4, 18), m_s = (0, 2.75, 2.75), Δt = 0.004, 100 000 steps. The paper prints \
              the size of E(400) − E(0), and of the mean of E − E(0) over all samples with the first. \
              MR2, S, DMV, RK4 on (m, g) and the energy and Casimir preserving method are ours; so are \
-             the signs. A dash: the method has no step of this size here.",
+             the signs. A dash in a column of the paper: it does not have the method.",
         ),
         Table::new(
             "Energy error at t = 400 and its mean.",

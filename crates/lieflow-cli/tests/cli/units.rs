@@ -45,6 +45,12 @@ fn units_are_words_beside_numbers() {
     let [with, without] = ["named", "bare"].map(|run| folder.read(&format!("{run}/index.html")));
     assert!(with.contains("(rad/s)") && with.contains("t = 0 to 6 s"), "no unit on the page");
     assert!(!without.contains("rad/s") && without.contains("in the units of the scene"));
+    // The chart of the drifts has the unit of time, too.
+    let body = "[problem]\nkind = \"rigid-body\"\ninertia = [1, 2, 3]\nmomentum_body = [0.2, 0, 3]\n\
+                [method]\nname = \"rkmk4\"\n[time]\nt_span = [0, 5]\ndt = 0.1\n";
+    folder.write("free.toml", &format!("{SI}{body}"));
+    folder.lieflow(&["run", "free.toml", "--out", "free"]).ok();
+    assert!(folder.read("free/drift.svg").contains(">t (s)<"));
     // Both pages have the scene as it was written.
     assert!(without.contains("5*deg") && without.contains("2*k"));
 

@@ -191,6 +191,9 @@ fn the_page_and_its_files_are_complete() {
     assert!(page.contains("16 of the 16 numbers of Table 3"), "Table 3 differs");
     assert!(!page.contains("NaN") && !page.contains("inf "));
     assert!(page.matches("<figure>").count() >= 13);
+    assert!(page.contains("A dash in a column of the paper: it does not have the method."));
+    // One run has no median.
+    assert!(page.contains("In Figures 3 and 4 it is that of one run"));
     for heading in ["Table 1", "Table 2", "Table 3", "Table 4", "Errata", "What is new"] {
         assert!(page.contains(heading), "{heading}");
     }

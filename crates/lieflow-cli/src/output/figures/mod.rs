@@ -102,7 +102,7 @@ pub fn run_page(summary: &Summary, run: &Drawn<'_>) -> Page {
     ];
     if !run.watched.is_empty() {
         let mut invariants = vec![drift_table(summary)];
-        invariants.extend(drifts(summary, run.watched, run.rows));
+        invariants.extend(drifts(summary, run));
         sections.push(Section::new("What the exact motion conserves", invariants));
     }
     let text = vec![Block::Code(run.scene.text.clone())];
@@ -215,12 +215,7 @@ fn asked_for(summary: &Summary, run: &Drawn<'_>, is_line: bool) -> Vec<Figured> 
         let named: Vec<String> =
             columns.iter().map(|column| words::column(column.name())).collect();
         let unit_of = |columns: &[Column<'_>]| {
-            let of = |column: &Column<'_>| {
-                kind.quantity(column.quantity.name)
-                    .map_or(String::new(), |info| info.unit(&summary.unit_names))
-            };
-            let first = columns.first().map(of).unwrap_or_default();
-            if columns.iter().all(|column| of(column) == first) { first } else { String::new() }
+            shared_unit(kind, summary, columns.iter().map(|column| column.quantity))
         };
         let is_whole = columns.len() == quantity.columns.len()
             && columns.iter().all(|column| column.quantity.name == quantity.name);
@@ -245,6 +240,21 @@ fn asked_for(summary: &Summary, run: &Drawn<'_>, is_line: bool) -> Vec<Figured> 
         });
     }
     figures
+}
+
+/// The unit that all of these quantities have; empty where there is none.
+fn shared_unit<'a>(
+    kind: &problem::Kind,
+    summary: &Summary,
+    quantities: impl Iterator<Item = &'a Observable>,
+) -> String {
+    let unit = |quantity: &Observable| {
+        let info = kind.quantity(quantity.name);
+        info.map_or(String::new(), |info| info.unit(&summary.unit_names))
+    };
+    let mut units = quantities.map(unit);
+    let first = units.next().unwrap_or_default();
+    if units.all(|unit| unit == first) { first } else { String::new() }
 }
 
 /// The columns that are one figure with this one, where they are asked for one by one.
@@ -541,8 +551,9 @@ fn drift_table(summary: &Summary) -> Block {
 }
 
 /// |value − initial| of the invariants against time, in a fold where it is rounding alone. None where nothing changes.
-fn drifts(summary: &Summary, watched: &[&Observable], rows: &RowSample<'_>) -> Option<Block> {
-    let all = watched
+fn drifts(summary: &Summary, run: &Drawn<'_>) -> Option<Block> {
+    let all = run
+        .watched
         .iter()
         .flat_map(|law| law.columns.iter().enumerate().map(move |(i, column)| (law, i, column)));
     let moved = |column: &str| summary.drift.get(column).map_or(0.0, |drift| drift.max);
@@ -555,14 +566,18 @@ fn drifts(summary: &Summary, watched: &[&Observable], rows: &RowSample<'_>) -> O
         ..=LINES => String::new(),
         count => format!(" The {LINES} that moved most, of {count}."),
     };
-    let series = all.into_iter().take(LINES).enumerate().map(|(colour, (law, i, column))| {
+    all.truncate(LINES);
+    let kind = run.scene.problem.kind();
+    let unit = shared_unit(kind, summary, all.iter().map(|(law, ..)| **law));
+    let series = all.into_iter().enumerate().map(|(colour, (law, i, column))| {
         let initial = summary.drift.get(column).map_or(f64::NAN, |drift| drift.initial);
         let gap = |(t, row): (f64, Row<'_>)| (t, (row[law][i] - initial).abs());
         // A change of exactly 0, as at the start, has no place on a logarithm.
-        let points = rows.columns().map(gap).filter(|(_, gap)| *gap != 0.0);
+        let points = run.rows.columns().map(gap).filter(|(_, gap)| *gap != 0.0);
         Series::line(words::column(column), colour, points)
     });
-    let axes = [Axis::linear("t"), Axis::log("|value − value at the start|")];
+    let change = Axis::log("|value − value at the start|").with_unit(unit);
+    let axes = [Axis::linear("t").with_unit(summary.time_unit()), change];
     let chart = Chart::new("drift", "Drifts of the invariants", axes, series);
     let mut caption = format!("A change of exactly 0 cannot be drawn on this axis.{told}");
     if !constant.is_empty() {
