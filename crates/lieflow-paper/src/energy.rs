@@ -24,6 +24,11 @@ pub struct EnergyRun {
     pub seconds_per_step: f64,
 }
 
+/// The larger of two values; not a number where one of them is none.
+pub(crate) fn largest(a: f64, b: f64) -> f64 {
+    if a.is_nan() || a >= b { a } else { b }
+}
+
 /// The defect is computed once in this many samples.
 const EVERY: usize = 16;
 
@@ -43,9 +48,9 @@ impl EnergyRun {
     fn mean_of(&self, f: fn(f64) -> f64) -> f64 {
         self.error.iter().map(|(_, e)| f(*e)).sum::<f64>() / self.error.len() as f64
     }
-    /// The largest |E − E(0)|.
+    /// The largest |E − E(0)|; not a number where one of them is none, as in a run that failed.
     pub fn max(&self) -> f64 {
-        self.error.iter().map(|(_, e)| e.abs()).fold(0.0, f64::max)
+        self.error.iter().map(|(_, e)| e.abs()).fold(0.0, largest)
     }
     /// The slope of the line that fits E(t) best.
     pub fn drift(&self) -> f64 {
@@ -102,4 +107,23 @@ pub fn energy_run(
         Err(_) => (error, end) = (vec![(0.0, f64::NAN)], None),
     }
     Ok(EnergyRun { method, error, defect, end, seconds_per_step })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_run_that_fails_has_no_largest_error() {
+        let run = |error: &[f64]| EnergyRun {
+            method: PaperMethod::Exp,
+            error: error.iter().map(|error| (0.0, *error)).collect(),
+            defect: Vec::new(),
+            end: None,
+            seconds_per_step: 1.0,
+        };
+        assert_eq!(run(&[0.0, -3.0, 2.0]).max(), 3.0);
+        assert!(run(&[f64::NAN]).max().is_nan());
+        assert!(run(&[0.0, f64::NAN, 1.0]).max().is_nan());
+    }
 }
