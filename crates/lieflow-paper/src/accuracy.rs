@@ -38,6 +38,9 @@ pub const TESTS: [Test; 2] = [
     },
 ];
 
+/// Errors below this are near those of rounding, which say nothing of the order of a method.
+const ROUNDING: f64 = 1e-12;
+
 /// The errors that costs are read off at.
 pub const EPSILONS: [f64; 2] = [1e-3, 1e-6];
 
@@ -100,7 +103,10 @@ impl Accuracy {
         Cost {
             printed: self.print().map(|printed| printed.printed[self.test][e]),
             ours: self.printed_step().map(|ops| n + ops.log10()),
-            counted: self.counted_step().map(|ops| n + (ops as f64).log10()),
+            counted: self.log_steps_above_rounding(EPSILONS[e]).zip(self.counted_step()).map(
+                // No run is shorter than a step.
+                |(n, ops)| n.max(0.0) + (ops as f64).log10(),
+            ),
             seconds: self.seconds_to(EPSILONS[e]),
         }
     }
@@ -113,8 +119,18 @@ impl Accuracy {
     /// log₁₀ of the number of steps that reach ε, as the paper reads it: on the line of least squares
     /// through log cost against log error of its six runs.
     pub fn log_steps(&self, epsilon: f64) -> f64 {
-        let logs = self.printed().iter().map(|p| (p.error.log10(), (p.steps as f64).log10()));
-        logs.collect::<Fit>().at(epsilon.log10()).unwrap_or(f64::NAN)
+        logs_of(self.printed()).collect::<Fit>().at(epsilon.log10()).unwrap_or(f64::NAN)
+    }
+
+    /// The same without runs whose error is near rounding, and without those that failed; none where fewer than three
+    /// runs are left.
+    fn log_steps_above_rounding(&self, epsilon: f64) -> Option<f64> {
+        let runs = self.printed().iter().filter(|p| p.error >= ROUNDING);
+        let logs: Vec<_> = logs_of(runs).collect();
+        if logs.len() < 3 {
+            return None;
+        }
+        logs.into_iter().collect::<Fit>().at(epsilon.log10())
     }
 
     /// The CPU time that reaches ε, between two runs by the line through them in the logarithms; none
@@ -127,6 +143,13 @@ impl Accuracy {
         let share = (a.error / epsilon).ln() / (a.error / b.error).ln();
         Some((a.seconds.ln() + share * (b.seconds / a.seconds).ln()).exp())
     }
+}
+
+/// The logarithms of error and number of steps.
+fn logs_of<'a>(
+    runs: impl IntoIterator<Item = &'a AccuracyPoint>,
+) -> impl Iterator<Item = (f64, f64)> {
+    runs.into_iter().map(|p| (p.error.log10(), (p.steps as f64).log10()))
 }
 
 /// Measure every method with an attitude in the test of this place in [`TESTS`], in rounds that take turns.
@@ -177,4 +200,35 @@ fn time(all: &mut [Accuracy], body: &Body, rounds: u32) -> Result<(), RunError> 
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A method of these errors at 2, 4, 8, … steps, whose step takes 1 s and a hundred operations.
+    fn with_errors(errors: &[f64]) -> Accuracy {
+        let point = |(power, error): (u32, &f64)| {
+            let steps = 1 << power;
+            AccuracyPoint { steps, error: *error, seconds: steps as f64 }
+        };
+        let ops = Ops { add: 100, ..Ops::default() };
+        let points = (1..).zip(errors).map(point).collect();
+        Accuracy { test: 0, method: PaperMethod::Dmv10, points, ops: Some(ops) }
+    }
+
+    #[test]
+    fn operations_are_counted_where_errors_are_above_rounding() {
+        let counted = |errors: &[f64]| with_errors(errors).cost(0).counted;
+        // Order 2: 16 steps to 1e-3.
+        let errors = [1, 2, 3, 4, 5].map(|power| 0.256 / 4f64.powi(power));
+        let rounding = [&errors[..], &[3e-15]].concat();
+        let expected = 16f64.log10() + 2.0;
+        for errors in [&errors[..], &rounding] {
+            assert!(counted(errors).is_some_and(|x| (x - expected).abs() < 1e-12), "{errors:?}");
+        }
+        // A step is enough, and two runs are no line.
+        assert_eq!(counted(&[1e-8, 1e-9, 1e-10, 1e-11, 1e-14, 1e-14]), Some(2.0));
+        assert_eq!(counted(&[1e-8, 1e-11, 1e-14, 1e-14, f64::NAN, 1e-14]), None);
+    }
 }
