@@ -51,7 +51,7 @@ pub struct AccuracyPoint {
     pub steps: u64,
     /// ‖g(1) − exact‖, the spectral norm; not a number when a step failed.
     pub error: f64,
-    /// CPU time.
+    /// CPU time of its steps, without that of the set-up of a run.
     pub seconds: f64,
 }
 
@@ -181,6 +181,22 @@ pub fn accuracy(test: usize, finer: u32, rounds: u32) -> Result<Vec<Accuracy>, R
 /// A timing shorter than this is repeated within its round.
 const SHORTEST: f64 = 2e-4;
 
+/// A run of few steps is mostly its set-up: the time of a step is that of a run of so many, or more.
+const LONG: u64 = 2048;
+
+/// The CPU time of so many steps over a unit of time.
+fn seconds(method: PaperMethod, body: &Body, steps: u64) -> Result<f64, RunError> {
+    let (grid, share) = long_run(steps)?;
+    Ok(share * method.seconds(body, &grid, SHORTEST)?)
+}
+
+/// A long run of steps of the size that so many have over a unit of time, and their part of it.
+fn long_run(steps: u64) -> Result<(TimeGrid, f64), RunError> {
+    let long = steps.max(LONG);
+    let share = steps as f64 / long as f64;
+    Ok((TimeGrid::with_steps([0.0, 1.0 / share], long)?, share))
+}
+
 fn time(all: &mut [Accuracy], body: &Body, rounds: u32) -> Result<(), RunError> {
     let mut times: Vec<Vec<Vec<f64>>> =
         all.iter().map(|a| vec![Vec::new(); a.points.len()]).collect();
@@ -188,8 +204,7 @@ fn time(all: &mut [Accuracy], body: &Body, rounds: u32) -> Result<(), RunError> 
         for (accuracy, times) in all.iter().zip(&mut times) {
             for (point, times) in accuracy.points.iter().zip(times) {
                 if !point.error.is_nan() {
-                    let grid = TimeGrid::with_steps([0.0, 1.0], point.steps)?;
-                    times.push(accuracy.method.seconds(body, &grid, SHORTEST)?);
+                    times.push(seconds(accuracy.method, body, point.steps)?);
                 }
             }
         }
@@ -215,6 +230,14 @@ mod tests {
         let ops = Ops { add: 100, ..Ops::default() };
         let points = (1..).zip(errors).map(point).collect();
         Accuracy { test: 0, method: PaperMethod::Dmv10, points, ops: Some(ops) }
+    }
+
+    #[test]
+    fn short_runs_are_timed_as_long_ones() {
+        let (grid, share) = long_run(2).unwrap();
+        assert_eq!((grid.steps(), grid.h(), share * 2048.0), (2048, 0.5, 2.0));
+        let (grid, share) = long_run(4096).unwrap();
+        assert_eq!((grid.steps(), grid.h(), share), (4096, 1.0 / 4096.0, 1.0));
     }
 
     #[test]

@@ -117,7 +117,7 @@ fn separatrix(all: &[Separatrix]) -> Vec<Block> {
             "Ours: near the separatrix. J = diag(1, 2, 3), m = (1e-6, 1, 1e-6), h = 0.05. \
              L² − 2EJ₂ = {} is constant, and its sign says which axis the motion goes around. RKMK \
              and RK4 on g lose it by their drift: exp and cay cross over. All three are wrong by half a \
-             turn, 2√2 in the table, at their worst. The splittings and S come back to it after each \
+             turn at their worst, 2√2 = 2.8 in the table. The splittings and S come back to it after each \
              swing, and RK4 on (m, g) never leaves it: with J diagonal the planes of the separatrix are \
              invariant under any Runge–Kutta method on m. These stay right to a few thousandths. Obtained \
              by one run of each; L² − 2EJ₂ = Σ m_j²(1 − J₂/J_j), which cancels nothing, of the momentum \

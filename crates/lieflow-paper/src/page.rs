@@ -237,8 +237,9 @@ fn table4(paper: &Paper) -> Vec<Block> {
          of a step are not those of its text; they are the integers that its numbers imply. “Counted” \
          is the same line with the operations of the library's step, counted as it runs. It leaves out \
          runs whose error is below 1e-12, near that of rounding, and has a dash where fewer than three \
-         runs are left. No number of it is below that of one step. “Time” is CPU time to ε, between the \
-         two runs around it. S in the second test has no “ours”: no cost of a step fits its two numbers.",
+         runs are left. No number of it is below that of one step. “Time” is CPU time to ε: the number of \
+         steps, between the two runs around it, times the time of a step of that size in a run of at least \
+         2048. A shorter run is mostly its set-up. S in the second test has no “ours”: no cost of a step fits its two numbers.",
     )];
     for (t, test) in TESTS.iter().enumerate() {
         let all = &paper.accuracy[t];
