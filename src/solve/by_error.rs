@@ -4,6 +4,7 @@ use core::cell::Cell;
 use core::sync::atomic::Ordering;
 
 use super::control::{Controller, StepControl};
+use super::events::LONG_STEPS;
 use super::points::AnyPoints;
 use super::stats::{RunError, Stats};
 use super::stops::Stop;
@@ -263,10 +264,12 @@ impl Timeline {
         within(h)
     }
 
-    /// Computes how fast the state turns, if that was long ago or a step of this size is a long one.
+    /// Computes how fast the state turns, if that was long ago or a step of this size is a long one. Steps of methods of a
+    /// high order are searched for zeros whatever they turn, so only those near the longest one are long here.
     pub(super) fn see_turns(&mut self, points: &mut dyn AnyPoints, size: f64) {
-        let accepted = self.stats.accepted;
-        let is_due = |turns: &Turns| accepted >= turns.next || size.abs() > turns.radian;
+        let (accepted, is_searched) = (self.stats.accepted, self.facts.order >= LONG_STEPS);
+        let near = if is_searched { self.farthest_turn() / FARTHEST } else { 1.0 };
+        let is_due = |turns: &Turns| accepted >= turns.next || size.abs() > near * turns.radian;
         if self.turns.as_ref().is_some_and(is_due) {
             let radian = 1.0 / points.turn_rate(self.start_of(size.abs()));
             self.turns = Some(Turns { radian, next: accepted + Turns::EVERY });

@@ -447,7 +447,9 @@ impl Timeline {
         if t == start || t == self.begun {
             return Ok(Place::Start);
         }
-        self.prepare(points).map_err(|source| self.no_point(source))?;
+        if self.looked_at != Looked::Prepared {
+            self.prepare(points).map_err(|source| self.no_point(source))?;
+        }
         let theta = ((t - start) / h).clamp(0.0, 1.0);
         // A step in two halves has the point between them.
         let is_known = self.is_doubled() && theta == 0.5;

@@ -277,7 +277,7 @@ impl Wide for f64 {
 mod tests {
     use nalgebra::Vector3;
 
-    use super::super::series::{Body, OneStep, at};
+    use super::super::series::{At, Body, OneStep};
     use super::*;
 
     /// Every kind of lanes that this machine has gives the same step.
@@ -288,7 +288,7 @@ mod tests {
         let mut terms = [[0.0; 4]; 16];
         let mut by = |run: &dyn Fn(OneStep<'_, f64, 16>) -> [f64; 4]| {
             let q = run(OneStep { body: &body, h: 0.4, m, terms: &mut terms });
-            assert_eq!(q, at(&terms, 1.0));
+            assert_eq!(q, f64::dispatch(At { terms: &terms, theta: 1.0 }));
             q
         };
         let expected = by(&|step| step.run(Plain));

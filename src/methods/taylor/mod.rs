@@ -23,7 +23,7 @@ mod series;
 use nalgebra::Vector3;
 
 pub use lanes::Wide;
-use series::{Advance, Body, OneStep, at, error, reach, rotation, square_of};
+use series::{Advance, At, Body, OneStep, error, reach, rotation, square_of, turned_back};
 
 use super::embedded::ratio_of_relative;
 use super::simo_wong::turn_by;
@@ -32,7 +32,7 @@ use crate::error::{Error, StepError};
 use crate::groups::{LieAlgebra, So3};
 use crate::problems::{Frame, FreeBody, PointOf, ScalarOf};
 use crate::scalar::Real;
-use crate::space::Numbers;
+use crate::space::{Metric, Numbers};
 use crate::tolerance::Tolerance;
 
 /// The Taylor method of order N, 4 ≤ N ≤ 16. Another N does not compile.
@@ -109,6 +109,24 @@ impl<const N: usize> Taylor<N> {
     }
 }
 
+/// y ← the point to which the rotation of a quaternion of any length takes m and the frame.
+#[inline(always)]
+fn turn<P: FreeBody>(
+    problem: &P,
+    q: [ScalarOf<P>; 4],
+    (m, mut frame): (Vector3<ScalarOf<P>>, P::Frame),
+    y: &mut PointOf<P>,
+) -> Result<(), StepError> {
+    if P::Frame::TURNS {
+        return turn_by(problem, &rotation(q), m, &mut frame, y);
+    }
+    // No matrix: it is for the frame.
+    let next = turned_back(q, &m);
+    StepError::finite(So3::new().is_finite(&next), "the body momentum")?;
+    problem.store(&next, &frame, y);
+    Ok(())
+}
+
 /// The terms of a step, for the points within it.
 #[derive(Clone, Debug)]
 pub struct TaylorWork<S, const N: usize> {
@@ -149,9 +167,9 @@ where
         y: &mut PointOf<P>,
         work: &mut Self::Work,
     ) -> Result<(), StepError> {
-        let (m, mut frame) = problem.load(y);
+        let (m, frame) = problem.load(y);
         let q = work.step(problem.inverse_inertia(), h, m);
-        turn_by(problem, &rotation(q), m, &mut frame, y)
+        turn(problem, q, (m, frame), y)
     }
     /// The last step has its terms. Those of another one are computed.
     fn prepare(
@@ -163,7 +181,8 @@ where
         work: &mut Self::Work,
     ) -> Result<(), StepError> {
         let m = problem.load(from).0;
-        if work.of != Some((h, m)) {
+        let is_known = work.of.is_some_and(|(of, from)| of == h && from.is_same(&m));
+        if !is_known {
             work.step(problem.inverse_inertia(), h, m);
         }
         Ok(())
@@ -178,8 +197,8 @@ where
         work: &mut Self::Work,
         y: &mut PointOf<P>,
     ) -> Result<(), StepError> {
-        let (m, mut frame) = problem.load(from);
-        turn_by(problem, &rotation(at(&work.terms, Real::lit(theta))), m, &mut frame, y)
+        let at = At { terms: &work.terms, theta: Real::lit(theta) };
+        turn(problem, Wide::dispatch(at), problem.load(from), y)
     }
     fn within(&self, _: &Self::Work) -> Within {
         Within::Series
@@ -204,10 +223,10 @@ where
         work: &mut Self::Work,
         to: &mut PointOf<P>,
     ) -> Result<ScalarOf<P>, StepError> {
-        let (m, mut frame) = problem.load(from);
+        let (m, frame) = problem.load(from);
         let j = problem.inverse_inertia();
         let q = work.step(j, h, m);
-        turn_by(problem, &rotation(q), m, &mut frame, to)?;
+        turn(problem, q, (m, frame), to)?;
         // The angle is twice that of the quaternion.
         let error = 2.0 * error(&work.terms);
         let omega = Vector3::new(j[0] * m[0], j[1] * m[1], j[2] * m[2]);

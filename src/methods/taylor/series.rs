@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::lanes::{INVERSE, Kernel, Lanes, Wide};
+use super::lanes::{INVERSE, Kernel, Lanes, Plain, Wide};
 use crate::error::StepError;
 use crate::scalar::Real;
 
@@ -18,7 +18,8 @@ pub(super) struct Body<S> {
 /// 𝟙 as a quaternion.
 #[inline(always)]
 fn unit<S: Real>() -> [S; 4] {
-    [0.0, 0.0, 0.0, 1.0].map(S::lit)
+    // No `map`: in a build without LTO it is a call.
+    [S::lit(0.0), S::lit(0.0), S::lit(0.0), S::lit(1.0)]
 }
 
 impl<S: Wide> Body<S> {
@@ -143,7 +144,7 @@ impl<S: Wide, const N: usize> Kernel<S> for OneStep<'_, S, N> {
         let OneStep { body, h, m, terms } = self;
         let m = l.load([m[0], m[1], m[2], S::lit(0.0)]);
         let found = body.terms::<L, N>(l, h, m);
-        // As `at` has it for θ = 1.
+        // As `At` has it for θ = 1.
         let mut sums = [l.splat(S::lit(0.0)); 2];
         for k in (0..N).rev() {
             terms[k] = l.store(found[k]);
@@ -154,26 +155,33 @@ impl<S: Wide, const N: usize> Kernel<S> for OneStep<'_, S, N> {
 }
 
 /// The quaternion at θh, not of length 1: odd and even powers each by Horner's rule.
-#[inline(always)]
-pub(super) fn at<S: Real, const N: usize>(terms: &[[S; 4]; N], theta: S) -> [S; 4] {
-    let square = theta * theta;
-    let mut sums = [[S::lit(0.0); 4]; 2];
-    for (k, term) in terms.iter().enumerate().rev() {
-        for i in 0..4 {
-            sums[k % 2][i] = sums[k % 2][i] * square + term[i];
+pub(super) struct At<'a, S, const N: usize> {
+    pub(super) terms: &'a [[S; 4]; N],
+    pub(super) theta: S,
+}
+
+impl<S: Wide, const N: usize> Kernel<S> for At<'_, S, N> {
+    type Out = [S; 4];
+
+    #[inline(always)]
+    fn run<L: Lanes<S>>(self, l: L) -> [S; 4] {
+        let At { terms, theta } = self;
+        let (theta, square) = (l.splat(theta), l.splat(theta * theta));
+        let mut sums = [l.splat(S::lit(0.0)); 2];
+        for k in (0..N).rev() {
+            sums[k % 2] = l.mul_add(sums[k % 2], square, l.load(terms[k]));
         }
+        let [odd, even] = sums;
+        l.store(l.mul_add(l.mul_add(even, theta, odd), theta, l.load(unit())))
     }
-    let [odd, even] = sums;
-    let mut q = core::array::from_fn(|i| (even[i] * theta + odd[i]) * theta);
-    q[3] += S::lit(1.0);
-    q
 }
 
 /// The error of a step: the last term, or the one before to the power N/(N − 1), because one of both may vanish where the
 /// motion is even or odd.
 #[inline(always)]
 pub(super) fn error<S: Real + Into<f64>, const N: usize>(terms: &[[S; 4]; N]) -> f64 {
-    let [before, last] = [terms[N - 2], terms[N - 1]].map(|term| square_of(term).into());
+    let (before, last): (f64, f64) =
+        (square_of(terms[N - 2]).into(), square_of(terms[N - 1]).into());
     let root = coarse_root(before, 1.0, 2 * (N - 1));
     last.sqrt().max(before.sqrt() * root)
 }
@@ -318,7 +326,7 @@ fn product<L: Lanes<f64>>(l: L, p: L::V, q: L::V) -> L::V {
 
 /// Rᵀm for the rotation R of q = (v, w): m + 2/|q|² (v × (v × m) − w v × m).
 #[inline(always)]
-fn turn_back<L: Lanes<f64>>(l: L, q: L::V, length: f64, m: L::V) -> L::V {
+fn turn_back<S: Real, L: Lanes<S>>(l: L, q: L::V, length: S, m: L::V) -> L::V {
     // The last number of m is 0, and so are those of the products.
     let cross = |a: L::V, b: L::V| {
         let crossed = l.mul_sub(a, l.cycled(b)[0], l.mul(l.cycled(a)[0], b));
@@ -327,5 +335,13 @@ fn turn_back<L: Lanes<f64>>(l: L, q: L::V, length: f64, m: L::V) -> L::V {
     let vm = cross(q, m);
     let minus_w = l.splat(-l.store(q)[3]);
     let turn = l.mul_add(minus_w, vm, cross(q, vm));
-    l.mul_add(l.splat(2.0 / length), turn, m)
+    l.mul_add(l.splat(S::lit(2.0) / length), turn, m)
+}
+
+/// Rᵀm for the rotation R of a quaternion of any length.
+#[inline(always)]
+pub(super) fn turned_back<S: Real>(q: [S; 4], m: &Vector3<S>) -> Vector3<S> {
+    let m = [m[0], m[1], m[2], S::lit(0.0)];
+    let [x, y, z, _] = turn_back(Plain, q, square_of(q), m);
+    Vector3::new(x, y, z)
 }
