@@ -12,11 +12,17 @@ use super::{Real, Select, Trig};
 
 /// hi + lo, with |lo| at most half an ulp of hi.
 ///
-/// The closed forms of the library run on it, and the methods that are generic in the number type. `magnus6`,
-/// `cayley-magnus6` and Lie series on [`Se3`](crate::groups::Se3) have its digits. Coefficients of Runge–Kutta tableaus, of
-/// Padé approximants, of `magnus8` and of commutator-free methods are f64, so steps by them are those of coefficients that are
-/// rounded: their results have 16 digits, and tolerances below that are not reached. Numbers that a problem takes as f64, such
-/// as moments of inertia, are rounded too.
+/// The closed forms of the library run on it, and the methods that are generic in the number type. Steps by Lie series on
+/// [`Se3`](crate::groups::Se3) and by [`Taylor`](crate::methods::Taylor) have its digits, and those by `magnus6` and
+/// `cayley-magnus6` about 25: some of their coefficients are f64. Coefficients of Runge–Kutta tableaus, of Padé approximants,
+/// of `magnus8` and of commutator-free methods are f64, so steps by them are those of coefficients that are rounded: their
+/// results have 16 digits, and tolerances below that are not reached. Numbers that a problem takes as f64, such as moments of
+/// inertia, are rounded too.
+///
+/// Times and step sizes are f64. A run over a span has the digits of a double double only if its steps add up to the span
+/// exactly, as 64 equal steps over \[0, 1\] do; 100 steps, and steps by error, end up to ε/2·|t| beside t, with ε of f64.
+///
+/// ∞ and NaN are as in f64. Numbers whose products are beyond 1e300 may have 16 digits.
 ///
 /// ```
 /// use lieflow::scalar::{DoubleDouble, Real};
@@ -74,13 +80,20 @@ impl DoubleDouble {
     #[inline]
     const fn plus(self, other: Self) -> Self {
         let (s, t) = (two_sum(self.hi, other.hi), two_sum(self.lo, other.lo));
+        if !s.hi.is_finite() {
+            return Self::new(s.hi);
+        }
         let s = quick_two_sum(s.hi, s.lo + t.hi);
         quick_two_sum(s.hi, s.lo + t.lo)
     }
     #[inline]
     const fn times(self, other: Self) -> Self {
         let p = two_prod(self.hi, other.hi);
-        quick_two_sum(p.hi, p.lo + (self.hi * other.lo + self.lo * other.hi))
+        let lo = p.lo + (self.hi * other.lo + self.lo * other.hi);
+        if !p.hi.is_finite() || !lo.is_finite() {
+            return Self::new(p.hi);
+        }
+        quick_two_sum(p.hi, lo)
     }
     #[inline]
     const fn minus(self) -> Self {
@@ -89,6 +102,9 @@ impl DoubleDouble {
     /// Long division, three digits of 53 bits.
     const fn over(self, other: Self) -> Self {
         let first = self.hi / other.hi;
+        if !first.is_finite() || other.hi.is_infinite() {
+            return Self::new(first);
+        }
         let rest = self.plus(other.times(Self::new(-first)));
         let second = rest.hi / other.hi;
         let rest = rest.plus(other.times(Self::new(-second)));
@@ -177,10 +193,10 @@ impl Real for DoubleDouble {
     /// The root of the upper part, and one Newton step without a division (A. H. Karp, P. Markstein,
     /// 1997).
     fn sqrt(self) -> Self {
-        if self.hi == 0.0 {
-            return self;
-        }
         let root = self.hi.sqrt();
+        if root == 0.0 || !root.is_finite() {
+            return Self::new(root);
+        }
         let rest = self - two_prod(root, root);
         quick_two_sum(root, rest.hi * (0.5 / root))
     }
@@ -274,6 +290,21 @@ mod tests {
         assert_eq!(DoubleDouble::default().sqrt().value(), 0.0);
         assert!(!DoubleDouble::from(-1.0).sqrt().is_finite());
         assert!(!(DoubleDouble::from(1e308) * 10.0.into()).is_finite());
+    }
+
+    /// ∞ is a signal of tolerances and of step sizes.
+    #[test]
+    fn infinities_and_large_numbers() {
+        let [one, zero, infinity, large] = [1.0, 0.0, f64::INFINITY, 1e305].map(DoubleDouble::from);
+        for x in [infinity + one, infinity / 2.0.into(), one / zero, infinity.sqrt(), large * large]
+        {
+            assert_eq!((x.hi, x.lo), (f64::INFINITY, 0.0));
+        }
+        assert_eq!((one / infinity, zero * large), (zero, zero));
+        assert_eq!((large * 0.5.into()).value(), 5e304);
+        for x in [infinity - infinity, zero / zero, zero * infinity] {
+            assert!(x.value().is_nan());
+        }
     }
 
     /// By mpmath, to 36 digits: sums of two doubles.

@@ -245,7 +245,7 @@ fn orthogonalise<S: Real>(how: Projection, g: &mut Matrix3<S>) -> Result<(), Ste
                 for (x, d) in g.iter_mut().zip(&change) {
                     *x -= S::lit(0.5) * *d;
                 }
-                if frobenius(&gram).all_below(1e-8) {
+                if frobenius(&gram).all_below(S::EPSILON.sqrt().min(1e-8)) {
                     break;
                 }
             }
