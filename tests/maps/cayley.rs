@@ -121,6 +121,17 @@ fn inverse_map() {
     }
     let small = GroupMatrix::new_unchecked(Mat::identity(2, 2));
     assert!(cay_inv(&MatrixGroup::gl(3).expect("GL(3)"), &small).is_err());
+    // Near 𝟙 the trace of cay⁻¹(g) on SL(n) is rounding.
+    for n in [2, 3] {
+        let sl = MatrixGroup::sl(n).expect("SL(n)");
+        for k in 6..=12 {
+            let u = sl.sample_algebra(&mut rng, 10f64.powi(-k));
+            let g = Exp.eval(&sl, &u).expect("exp(u)");
+            let back = cay_inv(&sl, &g).expect("a g near 𝟙");
+            let gap = (&*back - &*u).norm_l2();
+            assert!(gap <= 40.0 * EPS, "SL({n}), 1e-{k}: {gap:e}");
+        }
+    }
     // On SL(3) most g are no cay(u) of a u without trace.
     let sl = MatrixGroup::sl(3).expect("SL(3)");
     let diagonal = |x: [f64; 3]| {

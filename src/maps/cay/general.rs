@@ -107,7 +107,9 @@ impl CayleyGroup for MatrixGroup {
             Form::Free if self.is_special() => {
                 let trace: f64 = (0..n).map(|i| u[(i, i)]).sum();
                 let size = norm_frobenius(&u);
-                match trace.abs() <= OFF_TRACE * size.max(f64::MIN_POSITIVE) {
+                // Near 𝟙 the trace is the rounding of g.
+                let rounding = 8.0 * n as f64 * f64::EPSILON;
+                match trace.abs() <= OFF_TRACE * size + rounding {
                     true => Ok(self.project_algebra(u.as_ref())),
                     false => Err(Error::Trace {
                         arg: "cay⁻¹(g)",
