@@ -323,6 +323,24 @@ fn no_change_is_a_reflection() {
     }
 }
 
+/// The end of a run that grows and damps may be the start of the next one, however long its rows are.
+#[test]
+fn starts_of_gl_and_sl_may_have_rows_of_any_length() {
+    let field = || Tree::List(vec![Tree::from(["1", "0"]), Tree::from(["0", "-1"])]);
+    let of = |group: &str, start: [[f64; 2]; 2]| {
+        let start = Tree::List(start.map(Tree::from).to_vec());
+        let keys = [("group", group.into()), ("field", field()), ("start", start)];
+        let kind = lieflow_model::kinds::named("matrix-ode").unwrap();
+        kind.problem(&Tree::table(keys)).map(drop).map_err(|error| error.to_string())
+    };
+    let grown = [[(40.0f64).exp(), 0.0], [0.0, (-40.0f64).exp()]];
+    for group in ["gl", "sl"] {
+        assert!(of(group, grown).is_ok(), "{group}");
+        let singular = of(group, [[1.0, 2.0], [2.0, 4.0]]).unwrap_err();
+        assert!(singular.contains("start"), "{singular}");
+    }
+}
+
 /// The forms of a rigid body whose points are matrices, or twelve numbers.
 #[test]
 fn states_of_bodies_are_on_m_in_every_form() {

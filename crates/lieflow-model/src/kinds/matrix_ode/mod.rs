@@ -240,7 +240,7 @@ fn start(
         check_symmetric("start", &start, 0.0)?;
     }
     if action == MatrixAction::Translation
-        && let Err(error) = group.element(start.clone())
+        && let Err(error) = check_start(group, &start)
     {
         let help = Some(algebra.form_of_group(n));
         let off = || Refusal::from(error).renamed(&[("g: ", "start: ")]).about("start");
@@ -254,6 +254,15 @@ fn start(
         start = near;
     }
     Ok(start)
+}
+
+/// Checks that a matrix is an element of the group. One that a run has grown or damped may be singular to working accuracy.
+fn check_start(group: &MatrixGroup, x: &Mat<f64>) -> Result<(), Error> {
+    let is_start = || group.check_member(&GroupMatrix::new_unchecked(x.clone())).is_ok();
+    match group.element(x.clone()) {
+        Err(Error::Singular { .. }) if is_start() => Ok(()),
+        checked => checked.map(drop),
+    }
 }
 
 /// The element of the group that a matrix of few digits stands for.
