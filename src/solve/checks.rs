@@ -26,25 +26,33 @@ pub(super) fn check_on_manifold<P: Problem>(
     y: &mut PointOf<P>,
     work: &mut <P::Action as Action<P::Group>>::Work,
 ) -> Result<bool, Error> {
-    let (group, action) = (problem.group(), problem.action());
-    let size = action.residual_size(group, y);
-    let Some(residual) = action.restore(group, y, work) else {
-        return Ok(false);
-    };
-    let residual = residual / size;
+    let Some(residual) = correct_to_manifold(problem, y, work) else { return Ok(false) };
     check_residual(problem, residual)?;
     Ok(!residual.all_below(ON_M * ScalarOf::<P>::EPSILON))
 }
 
-/// Refuses the relative residual of a y that is farther from M than numbers with seven digits are.
+/// Corrects y to M. Returns how far it was from there, relative to its size, where that is known.
+pub(super) fn correct_to_manifold<P: Problem>(
+    problem: &P,
+    y: &mut PointOf<P>,
+    work: &mut <P::Action as Action<P::Group>>::Work,
+) -> Option<ScalarOf<P>> {
+    let (group, action) = (problem.group(), problem.action());
+    let size = action.residual_size(group, y);
+    Some(action.restore(group, y, work)? / size)
+}
+
+/// Refuses the relative residual of a y that is farther from M than numbers with seven digits are, and than a run on numbers
+/// of this type may be by rounding.
 pub(super) fn check_residual<P: Problem>(problem: &P, residual: ScalarOf<P>) -> Result<(), Error> {
-    match residual.all_below(OFF_M_MAX) {
+    let tolerance = OFF_M_MAX.max(ON_M * ScalarOf::<P>::EPSILON);
+    match residual.all_below(tolerance) {
         true => Ok(()),
         false => Err(Error::NotOnGroup {
             arg: "y",
             group: problem.group().name(),
             residual: power_of_two_above(residual),
-            tolerance: OFF_M_MAX,
+            tolerance,
         }),
     }
 }

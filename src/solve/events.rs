@@ -83,6 +83,8 @@ pub(super) struct EventRule {
     pub(super) count: u64,
     /// g at the end of a step that may be passed.
     next: f64,
+    /// The rounding of the numbers of the problem.
+    epsilon: f64,
 }
 
 impl<Y> fmt::Debug for Event<'_, Y> {
@@ -107,6 +109,7 @@ impl<'a, Y> Event<'a, Y> {
             seen: Seen::default(),
             count: 0,
             next: 0.0,
+            epsilon: f64::EPSILON,
         };
         Event { rule, functions: EventFunctions { g: Box::new(g), change: None, told: None } }
     }
@@ -173,13 +176,13 @@ impl EventRule {
     /// The search for zeros in a step at whose end g is `last`. `turns` says that the state turns by more than a radian.
     #[inline(always)]
     fn search(&self, span: [f64; 2], last: f64, (first_step, turns): (bool, bool)) -> Search {
-        let EventRule { direction, points, has_long_steps, seen, .. } = *self;
+        let EventRule { direction, points, has_long_steps, seen, epsilon, .. } = *self;
         let is_long = match points {
             Points::AsNeeded => has_long_steps || turns,
             Points::Each(points) => points > 0 && turns,
             Points::By(_) => false,
         };
-        Search { direction, points, is_long, seen, first_step, span, last }
+        Search { direction, points, is_long, seen, first_step, span, last, epsilon }
     }
 
     /// Passes a step at whose end g is `last`, if g is far from 0: what [`Search::is_idle`] finds of nearly all steps, in a
@@ -211,7 +214,7 @@ impl EventRule {
     pub(super) fn is_rounding(&self, value: f64) -> bool {
         let Seen { value: last, before, .. } = self.seen;
         let size = before.map_or(0.0, |[start, _]| last.abs().max(start.abs()));
-        value.abs() <= 64.0 * f64::EPSILON * size
+        value.abs() <= 64.0 * self.epsilon * size
     }
 
     /// True if the run stops at this zero.
@@ -236,9 +239,11 @@ pub(super) struct Events {
 }
 
 impl Events {
-    /// The events of a run by a method of this order.
-    pub(super) fn new(mut all: Vec<EventRule>, order: usize) -> Self {
-        all.iter_mut().for_each(|event| event.has_long_steps = order >= LONG_STEPS);
+    /// The events of a run by a method of this order, on numbers with this rounding.
+    pub(super) fn new(mut all: Vec<EventRule>, order: usize, epsilon: f64) -> Self {
+        for event in &mut all {
+            (event.has_long_steps, event.epsilon) = (order >= LONG_STEPS, epsilon);
+        }
         let found = Vec::with_capacity(2 * all.len() * roots::MOST);
         Events { all, found }
     }

@@ -5,7 +5,7 @@
 //! compiles the driver once, and only this file again for each problem and method. A step itself has no such call.
 
 use super::checks::{
-    ON_M, check_on_manifold, check_residual, checked_field, checked_start, square_of_size,
+    ON_M, check_residual, checked_field, checked_start, correct_to_manifold, square_of_size,
 };
 use super::control::StepControl;
 use super::held::Held;
@@ -296,12 +296,14 @@ impl<'a, P: Problem, M: Method<P>> Points<'a, P, M> {
         !is_on(at) && is_on(y)
     }
 
-    /// y ← y changed by `change`, and corrected to M. It must be on M, else y is unchanged. The run continues on the orbit
-    /// of the new y.
+    /// y ← y changed by `change`, and corrected to M. It must be on M, or not be much farther from it than y was, which some
+    /// methods leave, else y is unchanged. The run continues on the orbit of the new y.
     pub(super) fn change(&mut self, change: &mut dyn FnMut(&mut PointOf<P>)) -> Result<(), Error> {
         let Points { problem, y, to, orbit, restore, .. } = self;
         let problem = &**problem;
         let (action, group) = (problem.action(), problem.group());
+        to.assign(y);
+        let was_off = correct_to_manifold(problem, to, restore);
         to.assign(y);
         change(to);
         let checked = to.check_sizes("y", y).and_then(|()| action.check(group, to));
@@ -310,7 +312,11 @@ impl<'a, P: Problem, M: Method<P>> Points<'a, P, M> {
             return checked;
         }
         let is_same = to.is_same(y);
-        check_on_manifold::<P>(problem, to, restore)?;
+        if let (Some(is_off), Some(was_off)) = (correct_to_manifold(problem, to, restore), was_off)
+            && !(is_off - ScalarOf::<P>::lit(2.0) * was_off).all_below(0.0)
+        {
+            check_residual(problem, is_off)?;
+        }
         // The run itself may have left it, by the errors of its steps.
         if !is_same && action.check_member(group, y).is_ok() {
             action.check_member(group, to)?;

@@ -16,8 +16,8 @@ const FALLS: [(usize, f64); 3] = [(1, 1.0 / 32.0), (3, 1.0 / 8.0), (4, 1.0 / 8.0
 pub(super) const MOST: usize = 17;
 /// The finest level.
 pub(super) const FINEST: usize = DEGREES.len() - 1;
-/// Rounding of a value, in parts of the sizes of the terms of its series.
-const ROUNDING: f64 = 16.0 * f64::EPSILON;
+/// Rounding of a value, in roundings of the numbers of the problem, and in parts of the sizes of the terms of its series.
+const ROUNDING: f64 = 16.0;
 /// The shortest part of an interval that is looked at.
 const SHORTEST: f64 = 1.0 / (1u64 << 48) as f64;
 /// The most points that separate zeros.
@@ -69,9 +69,9 @@ pub(super) fn shows_all(values: &[f64; MOST]) -> bool {
 /// The rounding of values of a function that has these values.
 ///
 /// A part of a step may have small values with the rounding of the whole step: those of g(y) have that of y, whose size does
-/// not depend on the part.
-pub(super) fn noise_of(values: &[f64; MOST]) -> f64 {
-    ROUNDING * values.iter().fold(0.0, |most: f64, x| most.max(x.abs()))
+/// not depend on the part. `epsilon` is the rounding of the numbers of the problem.
+pub(super) fn noise_of(values: &[f64; MOST], epsilon: f64) -> f64 {
+    ROUNDING * epsilon * values.iter().fold(0.0, |most: f64, x| most.max(x.abs()))
 }
 
 /// Numbers for polynomials of degree 16 at most.
@@ -185,8 +185,8 @@ pub(super) struct Proxy {
 
 impl Proxy {
     /// The polynomial through the values of this level, which are at their places among 17. `noise` is the least rounding
-    /// of the values, and `blur` is that of the places.
-    pub(super) fn new(values: &Numbers, level: usize, noise: f64, blur: f64) -> Self {
+    /// of the values, `blur` is that of the places, and `epsilon` that of the numbers of the problem.
+    pub(super) fn new(values: &Numbers, level: usize, [noise, blur, epsilon]: [f64; 3]) -> Self {
         let (degree, stride) = (DEGREES[level], stride(level));
         let mut at = [0.0; MOST];
         at.iter_mut().zip(values.iter().step_by(stride)).for_each(|(at, value)| *at = *value);
@@ -201,7 +201,7 @@ impl Proxy {
         let terms = c.iter().zip(largest).map(|(c, largest)| c.abs() * largest);
         // The slope of the polynomial T_k is at most k², and 2k² on [0, 1].
         let slopes = c.iter().enumerate().map(|(k, c)| c.abs() * (2 * k * k) as f64);
-        let rounding = noise + ROUNDING * terms.sum::<f64>() + blur * slopes.sum::<f64>();
+        let rounding = noise + ROUNDING * epsilon * terms.sum::<f64>() + blur * slopes.sum::<f64>();
         let last = c[degree - 1].abs() + c[degree].abs();
         let far = last + rounding;
         let level = level_of(&c, level, rounding);
@@ -277,8 +277,9 @@ impl Separators {
 /// middle, and at a point before.
 ///
 /// The parabola through the three points is as far from the function as the third divided difference tells. `before` is
-/// the distance of the point before, in parts of the distance of `start` and `end`, and the value there.
-pub(super) fn has_none([start, middle, end]: [f64; 3], before: (f64, f64)) -> bool {
+/// the distance of the point before, in parts of the distance of `start` and `end`, and the value there. `epsilon` is the
+/// rounding of the numbers of the problem.
+pub(super) fn has_none([start, middle, end]: [f64; 3], before: (f64, f64), epsilon: f64) -> bool {
     // Places −1, 0, 1 and −1 − x.
     let x = 2.0 * before.0;
     let slope = middle - start;
@@ -290,7 +291,7 @@ pub(super) fn has_none([start, middle, end]: [f64; 3], before: (f64, f64)) -> bo
     let least = start.abs().min(inner.abs()).min(end.abs());
     let sign = start > 0.0;
     // The parabola and the function differ by 0.4 of the third difference where it is constant.
-    let is_far = least > 2.0 * third && third <= (moves / 8.0).max(ROUNDING * least);
+    let is_far = least > 2.0 * third && third <= (moves / 8.0).max(ROUNDING * epsilon * least);
     // By chance a faster function has such values, but seldom where they are near each other and smooth.
     let is_slow = least > moves || least > 0.5 * moves && third <= moves / 32.0;
     (inner > 0.0) == sign && (end > 0.0) == sign && is_far && is_slow

@@ -106,6 +106,8 @@ pub(super) struct Search {
     pub(super) span: [f64; 2],
     /// g at the end.
     pub(super) last: f64,
+    /// The rounding of the numbers of the problem.
+    pub(super) epsilon: f64,
 }
 
 impl Search {
@@ -210,7 +212,11 @@ impl Search {
         let middle = roots::MOST / 2;
         values[middle] = g(left.0 + 0.5 * length)?;
         if let (0, Some([before, size])) = (self.seen.level, before)
-            && roots::has_none([left.1, values[middle], right.1], (size / length.abs(), before))
+            && roots::has_none(
+                [left.1, values[middle], right.1],
+                (size / length.abs(), before),
+                self.epsilon,
+            )
         {
             return Ok(Some(0));
         }
@@ -241,7 +247,7 @@ impl Search {
                 values[j] = g(at(roots::place(j)))?;
             }
             known = stride;
-            let proxy = Proxy::new(&values, level, noise, blur);
+            let proxy = Proxy::new(&values, level, [noise, blur, self.epsilon]);
             if let Some(separators) = proxy.separators() {
                 let places = separators.places().iter().map(|&place| at(place));
                 self.zeros_among(ends, places, g, found)?;
@@ -254,7 +260,8 @@ impl Search {
             self.zeros_among(ends, places, g, found)?;
             return Ok(roots::shows_all(&values).then_some(roots::FINEST));
         }
-        let noise = if halvings == HALVINGS { roots::noise_of(&values) } else { noise };
+        let noise =
+            if halvings == HALVINGS { roots::noise_of(&values, self.epsilon) } else { noise };
         let of_halves = (roots::FINEST, halvings - 1, noise);
         let mut is_sure = true;
         for [a, b] in [[left, (half, value)], [(half, value), right]] {

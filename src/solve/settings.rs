@@ -131,7 +131,7 @@ impl<'a> Settings<'a> {
     ) -> Drive<'a> {
         let has_zeros = events.iter().any(EventRule::has_zeros);
         times.expect_events(!events.is_empty(), has_zeros);
-        let events = Events::new(events, times.facts.order);
+        let events = Events::new(events, times.facts.order, times.epsilon);
         let Settings { save, times_by_steps, cancel, progress, checkpoints, resume, .. } = self;
         let mut stops = self.ends.into_iter();
         let (t0, next_stop) = (times.t, stops.next());

@@ -12,6 +12,7 @@ mod orbits;
 mod physics;
 mod restore;
 mod roots;
+mod scalars;
 mod scipy;
 mod scipy_events;
 mod series;
