@@ -23,7 +23,7 @@ mod series;
 use nalgebra::Vector3;
 
 pub use lanes::Wide;
-use series::{Advance, At, Body, OneStep, error, reach, rotation, square_of, turned_back};
+use series::{Advance, At, Body, OneStep, error, reach, rotation, square_of};
 
 use super::embedded::ratio_of_relative;
 use super::simo_wong::turn_by;
@@ -109,24 +109,6 @@ impl<const N: usize> Taylor<N> {
     }
 }
 
-/// y ← the point to which the rotation of a quaternion of any length takes m and the frame.
-#[inline(always)]
-fn turn<P: FreeBody>(
-    problem: &P,
-    q: [ScalarOf<P>; 4],
-    (m, mut frame): (Vector3<ScalarOf<P>>, P::Frame),
-    y: &mut PointOf<P>,
-) -> Result<(), StepError> {
-    if P::Frame::TURNS {
-        return turn_by(problem, &rotation(q), m, &mut frame, y);
-    }
-    // No matrix: it is for the frame.
-    let next = turned_back(q, &m);
-    StepError::finite(So3::new().is_finite(&next), "the body momentum")?;
-    problem.store(&next, &frame, y);
-    Ok(())
-}
-
 /// The terms of a step, for the points within it.
 #[derive(Clone, Debug)]
 pub struct TaylorWork<S, const N: usize> {
@@ -167,9 +149,9 @@ where
         y: &mut PointOf<P>,
         work: &mut Self::Work,
     ) -> Result<(), StepError> {
-        let (m, frame) = problem.load(y);
+        let (m, mut frame) = problem.load(y);
         let q = work.step(problem.inverse_inertia(), h, m);
-        turn(problem, q, (m, frame), y)
+        turn_by(problem, &rotation(q), m, &mut frame, y)
     }
     /// The last step has its terms. Those of another one are computed.
     fn prepare(
@@ -197,8 +179,9 @@ where
         work: &mut Self::Work,
         y: &mut PointOf<P>,
     ) -> Result<(), StepError> {
-        let at = At { terms: &work.terms, theta: Real::lit(theta) };
-        turn(problem, Wide::dispatch(at), problem.load(from), y)
+        let (m, mut frame) = problem.load(from);
+        let q = Wide::dispatch(At { terms: &work.terms, theta: Real::lit(theta) });
+        turn_by(problem, &rotation(q), m, &mut frame, y)
     }
     fn within(&self, _: &Self::Work) -> Within {
         Within::Series
@@ -223,10 +206,10 @@ where
         work: &mut Self::Work,
         to: &mut PointOf<P>,
     ) -> Result<ScalarOf<P>, StepError> {
-        let (m, frame) = problem.load(from);
+        let (m, mut frame) = problem.load(from);
         let j = problem.inverse_inertia();
         let q = work.step(j, h, m);
-        turn(problem, q, (m, frame), to)?;
+        turn_by(problem, &rotation(q), m, &mut frame, to)?;
         // The angle is twice that of the quaternion.
         let error = 2.0 * error(&work.terms);
         let omega = Vector3::new(j[0] * m[0], j[1] * m[1], j[2] * m[2]);

@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::lanes::{INVERSE, Kernel, Lanes, Plain, Wide};
+use super::lanes::{INVERSE, Kernel, Lanes, Wide};
 use crate::error::StepError;
 use crate::scalar::Real;
 
@@ -326,7 +326,7 @@ fn product<L: Lanes<f64>>(l: L, p: L::V, q: L::V) -> L::V {
 
 /// Rᵀm for the rotation R of q = (v, w): m + 2/|q|² (v × (v × m) − w v × m).
 #[inline(always)]
-fn turn_back<S: Real, L: Lanes<S>>(l: L, q: L::V, length: S, m: L::V) -> L::V {
+fn turn_back<L: Lanes<f64>>(l: L, q: L::V, length: f64, m: L::V) -> L::V {
     // The last number of m is 0, and so are those of the products.
     let cross = |a: L::V, b: L::V| {
         let crossed = l.mul_sub(a, l.cycled(b)[0], l.mul(l.cycled(a)[0], b));
@@ -335,13 +335,5 @@ fn turn_back<S: Real, L: Lanes<S>>(l: L, q: L::V, length: S, m: L::V) -> L::V {
     let vm = cross(q, m);
     let minus_w = l.splat(-l.store(q)[3]);
     let turn = l.mul_add(minus_w, vm, cross(q, vm));
-    l.mul_add(l.splat(S::lit(2.0) / length), turn, m)
-}
-
-/// Rᵀm for the rotation R of a quaternion of any length.
-#[inline(always)]
-pub(super) fn turned_back<S: Real>(q: [S; 4], m: &Vector3<S>) -> Vector3<S> {
-    let m = [m[0], m[1], m[2], S::lit(0.0)];
-    let [x, y, z, _] = turn_back(Plain, q, square_of(q), m);
-    Vector3::new(x, y, z)
+    l.mul_add(l.splat(2.0 / length), turn, m)
 }
