@@ -168,6 +168,16 @@ fn level_of(c: &[f64], own: usize, rounding: f64) -> Option<usize> {
     if falls(&own) { (0..=own).find(falls) } else { None }
 }
 
+/// The rounding of values of a function on an interval.
+pub(super) struct Rounding {
+    /// The least rounding of a value.
+    pub(super) noise: f64,
+    /// The rounding of the places, in parts of the interval.
+    pub(super) blur: f64,
+    /// The relative rounding of the numbers of the problem.
+    pub(super) epsilon: f64,
+}
+
 /// A function on an interval as a polynomial.
 pub(super) struct Proxy {
     degree: usize,
@@ -184,9 +194,12 @@ pub(super) struct Proxy {
 }
 
 impl Proxy {
-    /// The polynomial through the values of this level, which are at their places among 17. `noise` is the least rounding
-    /// of the values, `blur` is that of the places, and `epsilon` that of the numbers of the problem.
-    pub(super) fn new(values: &Numbers, level: usize, [noise, blur, epsilon]: [f64; 3]) -> Self {
+    /// The polynomial through the values of this level, which are at their places among 17.
+    pub(super) fn new(
+        values: &Numbers,
+        level: usize,
+        Rounding { noise, blur, epsilon }: Rounding,
+    ) -> Self {
         let (degree, stride) = (DEGREES[level], stride(level));
         let mut at = [0.0; MOST];
         at.iter_mut().zip(values.iter().step_by(stride)).for_each(|(at, value)| *at = *value);

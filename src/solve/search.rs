@@ -1,7 +1,7 @@
 //! The search for the zeros of an event in a step. It knows numbers only.
 
 use super::bracket;
-use super::roots::{self, Proxy};
+use super::roots::{self, Proxy, Rounding};
 use super::stats::RunError;
 
 /// The direction of the zeros that count.
@@ -247,7 +247,8 @@ impl Search {
                 values[j] = g(at(roots::place(j)))?;
             }
             known = stride;
-            let proxy = Proxy::new(&values, level, [noise, blur, self.epsilon]);
+            let rounding = Rounding { noise, blur, epsilon: self.epsilon };
+            let proxy = Proxy::new(&values, level, rounding);
             if let Some(separators) = proxy.separators() {
                 let places = separators.places().iter().map(|&place| at(place));
                 self.zeros_among(ends, places, g, found)?;

@@ -80,6 +80,20 @@ fn rows_of_the_attitude() {
     }
 }
 
+/// Steps of a high order are searched for all zeros, whatever they turn. So how fast the state turns is not computed before
+/// each step of more than a radian.
+#[test]
+fn long_steps_cost_the_evaluations_of_their_series() {
+    let body = RigidBody::<f64>::new(INERTIA).unwrap();
+    let solve = Solve::new(&body, &Taylor::<16>, [0.0, 200.0]).tolerances(1e-6, 0.0);
+    let solve = solve.event(Event::new("flip", |_, m: &V| m.y));
+    let stats = solve.run(V::new(0.1, 2.0, 0.3)).unwrap().stats;
+    assert!(stats.largest_step > 1.0);
+    let attempts = stats.accepted + stats.rejected + 1;
+    let more = stats.evaluations.unwrap() - 16 * attempts;
+    assert!(more < attempts / 10 + 5, "{more} more, {attempts} attempts");
+}
+
 /// Steps of about a radian have zeros of several events, and one of them twice: all are at their exact times.
 #[test]
 fn events_within_long_steps() {
