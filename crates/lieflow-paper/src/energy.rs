@@ -7,7 +7,7 @@ use lieflow_figures::{Axis, Chart, Series};
 use nalgebra::Matrix3;
 
 use crate::methods::{Body, PaperMethod};
-use lieflow_timing::{Fit, cpu_seconds};
+use lieflow_timing::{Fit, cpu_seconds, larger};
 
 /// The energy error of one run, sample by sample.
 #[derive(Clone, Debug)]
@@ -22,11 +22,6 @@ pub struct EnergyRun {
     pub end: Option<Matrix3<f64>>,
     /// CPU time of a step.
     pub seconds_per_step: f64,
-}
-
-/// The larger of two values; not a number where one of them is none.
-pub(crate) fn largest(a: f64, b: f64) -> f64 {
-    if a.is_nan() || a >= b { a } else { b }
 }
 
 /// The defect is computed once in this many samples.
@@ -48,9 +43,9 @@ impl EnergyRun {
     fn mean_of(&self, f: fn(f64) -> f64) -> f64 {
         self.error.iter().map(|(_, e)| f(*e)).sum::<f64>() / self.error.len() as f64
     }
-    /// The largest |E − E(0)|; not a number where one of them is none, as in a run that failed.
+    /// The largest |E − E(0)|; NaN if one of them is NaN, as in a run that failed.
     pub fn max(&self) -> f64 {
-        self.error.iter().map(|(_, e)| e.abs()).fold(0.0, largest)
+        self.error.iter().map(|(_, e)| e.abs()).fold(0.0, larger)
     }
     /// The slope of the line that fits E(t) best.
     pub fn drift(&self) -> f64 {
@@ -60,7 +55,7 @@ impl EnergyRun {
     /// swings through 0, and on a logarithm the lines would cover each other.
     pub fn line(&self, unit: f64) -> Series {
         let largest = self.error.iter().scan(0.0, |largest: &mut f64, (t, error)| {
-            *largest = largest.max(error.abs());
+            *largest = larger(*largest, error.abs());
             Some((t * unit, *largest))
         });
         // An error of exactly zero, as at the start, has no place on a logarithm.

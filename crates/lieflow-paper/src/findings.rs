@@ -3,11 +3,12 @@
 use lieflow::groups::{Sample, So3};
 use lieflow::problems::{Exact, RigidBody};
 use lieflow::{RunError, SaveAt, TimeGrid};
+use lieflow_timing::larger;
 use nalgebra::{Matrix3, Vector3};
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
 
-use crate::energy::{energy_run, largest};
+use crate::energy::energy_run;
 use crate::experiments::{EXAMPLE1, EXAMPLE3, Experiment};
 use crate::methods::{Body, PaperMethod};
 
@@ -152,7 +153,7 @@ pub fn separatrix() -> Result<Vec<Separatrix>, RunError> {
         method.run(&body, &grid, SaveAt::Every(20), &mut |t, m, g| {
             side_of.push((t, side(&body, &m)));
             let gap = g.zip(exact.state(t).ok()).map(|(g, (_, exact))| (g - exact).norm());
-            error = largest(error, gap.unwrap_or(f64::NAN));
+            error = larger(error, gap.unwrap_or(f64::NAN));
         })?;
         Ok(Separatrix { method, side: side_of, error })
     };

@@ -188,7 +188,7 @@ impl Rows {
     }
 }
 
-/// The number of an integer. A callable with `__index__` is none.
+/// The value of a Python `int`. Another object with `__index__`, such as a callable, is refused.
 pub(crate) fn integer(x: &Bound<'_, PyAny>) -> PyResult<usize> {
     x.cast::<PyInt>()?.extract()
 }

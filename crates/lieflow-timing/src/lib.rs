@@ -7,6 +7,11 @@ mod fit;
 pub use clock::{cpu_seconds, machine, seconds_of};
 pub use fit::Fit;
 
+/// The larger of a and b; NaN if one of them is NaN.
+pub fn larger(a: f64, b: f64) -> f64 {
+    if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }
+}
+
 /// The median; not a number where there are no values. Sorts the values.
 ///
 /// ```

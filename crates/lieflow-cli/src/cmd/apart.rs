@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use lieflow::solve::Next;
 use lieflow_model::problem::Watcher;
 use lieflow_model::schema::{Branch, Component, Measure, Observable, Row, length};
-use lieflow_timing::cpu_seconds;
+use lieflow_timing::{cpu_seconds, larger};
 
 use super::shown::{OwnRows, OwnZeros, Shown};
 use super::signs::changes_of_sign;
@@ -286,11 +286,6 @@ fn relative(distance: f64, size: f64) -> f64 {
         0.0 => 0.0,
         distance => distance / size,
     }
-}
-
-/// The larger of two distances; NaN, if one is.
-fn larger(a: f64, b: f64) -> f64 {
-    if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }
 }
 
 /// What ends a run early.

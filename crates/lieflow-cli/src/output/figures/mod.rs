@@ -242,7 +242,7 @@ fn asked_for(summary: &Summary, run: &Drawn<'_>, is_line: bool) -> Vec<Figured> 
     figures
 }
 
-/// The unit that all of these quantities have; empty where there is none.
+/// The common unit of some quantities. It is empty if they have different units.
 fn shared_unit<'a>(
     kind: &problem::Kind,
     summary: &Summary,
