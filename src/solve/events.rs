@@ -1,16 +1,8 @@
 //! Events: where a function g(t, y) of the solution passes zero.
 //!
 //! After each step g is evaluated at the end of the step. Between two neighbours of opposite sign the zero is found by
-//! dense output, to rounding of t (`bracket.rs`).
-//!
-//! If the step may have two zeros, g is replaced by a polynomial in t. Its coefficients tell whether it has converged, and
-//! its zeros are counted (`roots.rs`). Where g has not converged the step is halved, five times at most. Points between
-//! the zeros of the polynomial separate those of g, which are then found as above.
-//!
-//! A long step may have many zeros, whatever g is at its ends. Steps are long by methods of order 10 and more, and those
-//! that turn the state by more than a radian, as an exponential does where f is constant. A long step whose values are
-//! far from 0 needs one value in its middle: with the end of the step before it shows how far the parabola through three
-//! values is from g.
+//! dense output, to rounding of t (`bracket.rs`). A step with more zeros is taken apart by points between them, which a
+//! polynomial in place of g gives (`roots.rs`). `docs/driver.md` says which steps are looked at so, and in which order.
 //!
 //! | g | what is found |
 //! |---|---|
