@@ -1,6 +1,6 @@
 //! Scenes that cannot be used: one clear message with the line, exit code 2, nothing written.
 
-use crate::support::{Folder, SCENE, read_csv};
+use crate::support::{Folder, SCENE};
 
 /// Replace a line of the scene, and expect the message to be about this line. The messages are in a snapshot:
 /// `cargo insta review` shows those that a change makes different.
@@ -397,7 +397,7 @@ fn samples_beside_a_scene() {
     // The angle is the integral of the lines, 1.
     folder.write("data/rate.csv", "t,w\n0,1\n1,0\n2,1\n");
     run().ok();
-    let (_, rows) = read_csv(&folder.read("out/trajectory.csv"));
+    let (_, rows) = folder.trajectory();
     assert!((rows[4][1] - 1f64.cos()).abs() < 1e-14, "{:?}", rows[4]);
 }
 

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::support::{Folder, read_csv};
+use crate::support::Folder;
 
 /// Runs a scene over a short time, and returns the header of its rows.
 fn header(folder: &Folder, scene: &str, sets: &[&str]) -> Vec<String> {
@@ -12,7 +12,7 @@ fn header(folder: &Folder, scene: &str, sets: &[&str]) -> Vec<String> {
     args.extend(sets.iter().flat_map(|set| ["--set", set]));
     folder.lieflow(&args).ok();
     let summary = folder.json("out/summary.json");
-    let (header, rows) = read_csv(&folder.read("out/trajectory.csv"));
+    let (header, rows) = folder.trajectory();
     assert!(rows.iter().all(|row| row.len() == header.len()), "{scene}");
     assert!(summary["columns"].as_array().unwrap().iter().eq(&header), "{scene}");
     header

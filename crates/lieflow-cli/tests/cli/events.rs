@@ -47,7 +47,7 @@ fn the_flips_of_a_body_are_found_told_marked_and_end_the_run() {
     assert_eq!(summary["events"][1]["count"], 6);
     assert!(summary["t_span"][1].is_null(), "{summary}");
     assert!(summary["error_at_end"]["momentum_body"].as_f64().unwrap() < 1e-3, "{summary}");
-    let (_, rows) = read_csv(&folder.read("out/trajectory.csv"));
+    let (_, rows) = folder.trajectory();
     assert_eq!(rows[rows.len() - 1][0], last);
     for figure in ["time-momentum-body", "time-energy", "drift"] {
         let svg = folder.read(&format!("out/{figure}.svg"));
@@ -142,7 +142,7 @@ fn output_times_are_reached_by_dense_output_or_by_steps() {
         folder.write("scene.toml", &text);
         folder.lieflow(&["run", "scene.toml", "--out", "out"]).ok();
         assert_eq!(folder.json("out/summary.json")["side_steps"], 1);
-        read_csv(&folder.read("out/trajectory.csv")).1
+        folder.trajectory().1
     };
     let [default, dense, steps] = ["", "times_by = \"dense\"", "times_by = \"steps\""].map(rows);
     assert_eq!(default, dense);
@@ -157,7 +157,7 @@ fn a_step_that_does_not_divide_the_span_ends_in_a_shorter_one() {
     let text = SCENE.replace("dt = 0.05", "dt = 0.3").replace("every = 10", "every = 1");
     folder.write("scene.toml", &text);
     folder.lieflow(&["run", "scene.toml", "--out", "out"]).ok();
-    let (_, rows) = read_csv(&folder.read("out/trajectory.csv"));
+    let (_, rows) = folder.trajectory();
     let times: Vec<f64> = rows.iter().map(|row| row[0]).collect();
     assert_eq!((times.len(), times[6], times[7]), (8, 6.0 * 0.3, 2.0));
     let summary = folder.json("out/summary.json");
@@ -181,13 +181,10 @@ fn a_span_without_end_has_a_limit_of_steps_and_no_comparison() {
 #[test]
 fn a_run_that_ends_within_a_step_breaks_no_promise() {
     let folder = Folder::new();
-    folder.write(
-        "scene.toml",
-        "[problem]\nkind = \"rigid-body\"\ninertia = [1, 2, 2.5]\nomega_body = [1.3, 0.16, -0.8]\n\
-         [method]\nname = \"gauss4\"\n[time]\nt_span = [0, 20]\ndt = 0.1\n[output]\nevery = 1\n\
-         [[events]]\nname = \"turned\"\nwhen = \"w2 + 0.25\"\nstop_after = 1\n",
-    );
-    let told = folder.lieflow(&["run", "scene.toml", "--no-page", "--out", "out"]).ok();
+    let scene = "[problem]\nkind = \"rigid-body\"\ninertia = [1, 2, 2.5]\nomega_body = [1.3, 0.16, -0.8]\n\
+                 [method]\nname = \"gauss4\"\n[time]\nt_span = [0, 20]\ndt = 0.1\n[output]\nevery = 1\n\
+                 [[events]]\nname = \"turned\"\nwhen = \"w2 + 0.25\"\nstop_after = 1\n";
+    let told = folder.run(scene).ok();
     assert!(told.contains("ended by event turned"), "{told}");
     assert!(!told.contains("promises to keep it"), "{told}");
     assert!(
@@ -208,10 +205,7 @@ fn rounding_of_a_function_is_that_of_its_own_numbers() {
              rtol = 1e-12\n[[events]]\nname = \"turn\"\nwhen = \"{when}\"\n[output]\ncount = 20\n"
         )
     };
-    let told = |when: &str| {
-        folder.write("scene.toml", &scene(when));
-        folder.lieflow(&["run", "scene.toml", "--out", "out", "--no-page"]).ok()
-    };
+    let told = |when: &str| folder.run(&scene(when)).ok();
     let turns = told("th2");
     assert!(turns.contains("event turn: 35 times"), "{turns}");
     assert!(!turns.contains("rounding. Its") && !turns.contains("up to rounding"), "{turns}");
@@ -239,8 +233,7 @@ fn a_jump_at_a_row_is_no_missed_zero() {
                  field = [\"{field}\"] }}]\n[time]\nt_span = [0, 3]\n{stops}\n[output]\n{output}\n[[events]]\n\
                  name = \"z\"\nwhen = \"{when}\"\n"
             );
-            folder.write("scene.toml", &scene);
-            let told = folder.lieflow(&["run", "scene.toml", "--no-page", "--out", "out"]).ok();
+            let told = folder.run(&scene).ok();
             assert!(told.contains(&format!("event z: {zeros}")), "{output}: {told}");
             assert!(!told.contains("WARNING"), "{output}: {told}");
         }

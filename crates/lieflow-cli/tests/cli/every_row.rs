@@ -1,6 +1,6 @@
 //! The errors that a run states are those of all its rows, and of the times of its events.
 
-use crate::support::{Folder, read_csv};
+use crate::support::Folder;
 use serde_json::Value;
 
 /// A body about its middle axis, whose exact motion is known.
@@ -83,9 +83,9 @@ fn every_row_of_a_free_body_is_compared_with_the_exact_motion() {
         (&summary["accuracy"]["rows"], &summary["accuracy"]["digits"]),
         (&1201.into(), &9.into())
     );
-    let (_, rows) = read_csv(&folder.read("out/trajectory.csv"));
+    let (_, rows) = folder.trajectory();
     run(&folder, FLIPS, &["method.name=exact", "method.tableau="]);
-    let (_, exact) = read_csv(&folder.read("out/trajectory.csv"));
+    let (_, exact) = folder.trajectory();
     let (largest, t) = distance(&rows, &exact, 1..4);
     let momentum = part(&summary, "momentum_body");
     assert!((number(&momentum["absolute"]) - largest).abs() < 2e-12, "{momentum} {largest:e}");
@@ -102,10 +102,10 @@ fn an_error_in_the_middle_is_stated_though_the_end_is_right() {
     let coarse = ["run", "attitude-control", "--no-page", "--out", "out", "--set", quantities];
     let told = folder.lieflow(&coarse).ok();
     let summary = folder.json("out/summary.json");
-    let (_, rows) = read_csv(&folder.read("out/trajectory.csv"));
+    let (_, rows) = folder.trajectory();
     let finer = ["--set", "time.dt=0.002", "--set", "output.every=20"];
     folder.lieflow(&[&coarse[..], &finer].concat()).ok();
-    let (_, fine) = read_csv(&folder.read("out/trajectory.csv"));
+    let (_, fine) = folder.trajectory();
     let (largest, t) = distance(&rows, &fine, 1..10);
     // Two rotations that are near to each other are an angle times the root of 2 apart.
     let largest = largest / 2.0_f64.sqrt();

@@ -232,14 +232,11 @@ fn a_method_that_fails_with_its_rows_is_left_out() {
 fn a_figure_costs_no_points_for_each_radian() {
     let folder = Folder::new();
     let within = |quantity: &str| {
-        folder.write(
-            "scene.toml",
-            &format!(
-                "[problem]\nkind = \"rigid-body\"\ninertia = [1, 2, 2.5]\nomega_body = [30, 100, 50]\n[method]\n\
-                 name = \"exact\"\n[time]\nt_span = [0, 100]\nsteps = 100\n[output]\nquantities = [\"{quantity}\"]\n"
-            ),
+        let scene = format!(
+            "[problem]\nkind = \"rigid-body\"\ninertia = [1, 2, 2.5]\nomega_body = [30, 100, 50]\n[method]\n\
+             name = \"exact\"\n[time]\nt_span = [0, 100]\nsteps = 100\n[output]\nquantities = [\"{quantity}\"]\n"
         );
-        folder.lieflow(&["run", "scene.toml", "--out", "out", "--no-page"]).ok();
+        folder.run(&scene).ok();
         folder.json("out/summary.json")["side_steps"].as_u64().expect("a count")
     };
     assert!(within("quaternion") > 10_000);

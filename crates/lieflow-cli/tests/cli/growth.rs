@@ -4,15 +4,11 @@ use crate::support::Folder;
 
 /// The run of a pendulum of this equation in these times.
 fn pendulum(start: &str, field: &str, time: &str) -> String {
-    let folder = Folder::new();
-    folder.write(
-        "scene.toml",
-        &format!(
-            "[problem]\nkind = \"composed\"\n[[problem.parts]]\nname = \"y\"\nspace = \"numbers\"\nstart = {start}\n\
-             field = {field}\n[time]\n{time}\n"
-        ),
+    let scene = format!(
+        "[problem]\nkind = \"composed\"\n[[problem.parts]]\nname = \"y\"\nspace = \"numbers\"\nstart = {start}\n\
+         field = {field}\n[time]\n{time}\n"
     );
-    folder.lieflow(&["run", "scene.toml", "--out", "out", "--no-page"]).ok()
+    Folder::new().run(&scene).ok()
 }
 
 /// The path to the upright position, y = 4 atan(eᵗ) − π: at t = 38 rounding decides on which side the pendulum falls. Two
@@ -49,9 +45,7 @@ fn increments_that_are_lost_in_sums_are_counted() {
 
 /// A run of this scene, without a page.
 fn told(scene: &str) -> String {
-    let folder = Folder::new();
-    folder.write("scene.toml", scene);
-    folder.lieflow(&["run", "scene.toml", "--out", "out", "--no-page"]).ok()
+    Folder::new().run(scene).ok()
 }
 
 /// A pulse that the run from the changed start sees, and the run itself does not, is no growth of small errors.
@@ -137,13 +131,11 @@ fn the_tolerance_of_a_start_that_grows_is_told() {
     let scene = "[problem]\nkind = \"composed\"\n[[problem.parts]]\nname = \"q\"\nspace = \"numbers\"\nstart = [1e-8]\n\
                  field = [\"p\"]\n[[problem.parts]]\nname = \"p\"\nspace = \"numbers\"\nstart = [0]\n\
                  field = [\"sin(q)\"]\n[time]\nt_span = [0, 60]\n";
-    folder.write("scene.toml", scene);
-    let told = folder.lieflow(&["run", "scene.toml", "--out", "out", "--no-page"]).refused();
+    let told = folder.run(scene).refused();
     let (_, atol) = told.split_once("take atol = ").expect(&told);
     let atol: f64 = atol.split(',').next().unwrap().parse().unwrap();
     assert!(1e-16 < atol && atol < 1e-14, "{told}");
-    folder.write("scene.toml", &format!("{scene}rtol = 1e-14\natol = {atol:e}\n"));
-    folder.lieflow(&["run", "scene.toml", "--out", "out", "--no-page"]).ok();
+    folder.run(&format!("{scene}rtol = 1e-14\natol = {atol:e}\n")).ok();
 }
 
 /// A run of the settings that are advised states the digits that were promised, also where f jumps.
@@ -157,8 +149,7 @@ fn the_digits_of_an_advice_hold_at_jumps() {
              name = \"cf-ls4\"\n[time]\nt_span = [0, 17.7]\nrtol = {rtol}\n[output]\n\
              quantities = [\"momentum_space\", \"attitude\"]\ncount = 20\n"
         );
-        folder.write("scene.toml", &scene);
-        folder.lieflow(&["run", "scene.toml", "--out", "out", "--no-page"]).ok()
+        folder.run(&scene).ok()
     };
     let digits = |text: &str| -> u32 {
         let (_, digits) = text.split_once("about ").expect(text);
@@ -179,14 +170,11 @@ fn a_pulse_that_is_stated_is_met() {
     for (kind, start) in
         [("schrodinger", "amplitudes = [1, 0]"), ("density-matrix", "density = [[1, 0], [0, 0]]")]
     {
-        folder.write(
-            "scene.toml",
-            &format!(
-                "[problem]\nkind = \"{kind}\"\n{start}\nenergies = [0, 0.01]\ncoupling = [[0, 10], [10, 0]]\n\
-                 pulse = [317.73, 0.01]\n[time]\nt_span = [0, 1000]\n[output]\nquantities = [\"populations\"]\n"
-            ),
+        let scene = format!(
+            "[problem]\nkind = \"{kind}\"\n{start}\nenergies = [0, 0.01]\ncoupling = [[0, 10], [10, 0]]\n\
+             pulse = [317.73, 0.01]\n[time]\nt_span = [0, 1000]\n[output]\nquantities = [\"populations\"]\n"
         );
-        folder.lieflow(&["run", "scene.toml", "--out", "out", "--no-page"]).ok();
+        folder.run(&scene).ok();
         let p = folder.json("out/summary.json")["final"]["p2"].as_f64().unwrap();
         assert!(
             (p - (0.1 * std::f64::consts::PI.sqrt()).sin().powi(2)).abs() < 1e-8,
@@ -218,8 +206,7 @@ fn formulas_do_not_count_as_rounding() {
              space = \"vector\"\nstart = [0.6, 0, 0.8]\nfield = [0, 0, 1]\n[method]\nname = \"rkmk4\"\n[time]\n\
              t_span = [0, 20]\ndt = 0.02\n[output]\nquantities = [\"invariants\"]\n{formula}"
         );
-        folder.write("scene.toml", &scene);
-        folder.lieflow(&["run", "scene.toml", "--out", "out", "--no-page"]).ok()
+        folder.run(&scene).ok()
     };
     for formula in ["", "[output.formulas]\nhuge = \"1e13*a3\"\n"] {
         let out = told(formula);

@@ -274,8 +274,7 @@ fn a_drift_of_rows_within_steps_is_a_warning() {
              omega_body = [0.1, 1, 0.1]\n[method]\nname = \"gauss4\"\n[time]\nt_span = [0, 20]\ndt = 0.2\n\
              [output]\nquantities = [\"momentum_body\"]\n{output}"
         );
-        folder.write("scene.toml", &scene);
-        let told = folder.lieflow(&["run", "scene.toml", "--out", "out", "--no-page"]).ok();
+        let told = folder.run(&scene).ok();
         let warned = told.matches("WARNING: ").count();
         assert_eq!(warned, told.matches("at rows within steps, but by").count(), "{told}");
         (warned, folder.json("out/summary.json")["drift"]["energy"].clone())

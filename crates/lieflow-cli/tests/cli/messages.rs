@@ -56,8 +56,7 @@ fn an_event_is_a_number_and_no_comparison() {
 fn events_that_never_come_or_are_missed_are_told() {
     let folder = Folder::new();
     let run = |events: &str| {
-        folder.write("scene.toml", &SCENE.replace("every = 10", &format!("every = 1\n{events}")));
-        folder.lieflow(&["run", "scene.toml", "--no-page", "--out", "out"]).ok()
+        folder.run(&SCENE.replace("every = 10", &format!("every = 1\n{events}"))).ok()
     };
     let event = |when: &str, more: &str| {
         run(&format!("[[events]]\nname = \"z\"\nwhen = \"{when}\"\n{more}"))
@@ -67,8 +66,7 @@ fn events_that_never_come_or_are_missed_are_told() {
     assert!(told.contains("event z: never\n"), "{told}");
     // It is zero at each row, and not between them.
     let turns = "[[events]]\nname = \"z\"\nwhen = \"1 - cos(2*pi*t)\"\n";
-    folder.write("scene.toml", &SCENE.replace("every = 10", &format!("interval = 1\n{turns}")));
-    let told = folder.lieflow(&["run", "scene.toml", "--no-page", "--out", "out"]).ok();
+    let told = folder.run(&SCENE.replace("every = 10", &format!("interval = 1\n{turns}"))).ok();
     assert!(told.contains("event z: 3 times") && !told.contains("zero all the time"), "{told}");
     let told = event("sqrt(m1^2 + m2^2 + m3^2) - sqrt(9.04)", "").replace('\n', " ");
     let rounding = told.contains("note: event `z`: its function is zero up to rounding, at most");
@@ -94,22 +92,17 @@ fn events_that_never_come_or_are_missed_are_told() {
     let body = "[problem]\nkind = \"rigid-body\"\ninertia = [1, 2, 3]\nomega_body = [0.1, 1, 0.1]\n\
                 [time]\nt_span = [0, 4]\n[[events]]\nname = \"z\"\nwhen = \"sin(RATE*t)\"\n";
     for (rate, is_told) in [("1e6", true), ("40", false)] {
-        folder.write("scene.toml", &body.replace("RATE", rate));
-        let told = folder.lieflow(&["run", "scene.toml", "--no-page", "--out", "out"]).ok();
+        let told = folder.run(&body.replace("RATE", rate)).ok();
         assert_eq!(told.contains("WARNING: zeros of events may be missed in"), is_told, "{told}");
         assert!(!told.contains("wrong zero"), "{told}");
-        folder.write("scene.toml", &(body.replace("RATE", rate) + "stop_after = 3\n"));
-        let told = folder.lieflow(&["run", "scene.toml", "--no-page", "--out", "out"]).ok();
+        let told = folder.run(&(body.replace("RATE", rate) + "stop_after = 3\n")).ok();
         let wrong = "The event z may have ended the run at a wrong zero.";
         assert_eq!(told.contains(wrong), is_told, "{told}");
     }
     // A run back in time that ends where it starts.
-    folder.write(
-        "scene.toml",
-        "[problem]\nkind = \"driven-body\"\ninertia = [1, 2, 2.5]\nomega_body = [0.3, 0.2, 1]\ndamping = 0.1\n\
-         [time]\nt_span = [0, -20]\n[[events]]\nname = \"z\"\nwhen = \"sin(3*t)\"\nstop_after = 1\n",
-    );
-    let told = folder.lieflow(&["run", "scene.toml", "--no-page", "--out", "out"]).ok();
+    let scene = "[problem]\nkind = \"driven-body\"\ninertia = [1, 2, 2.5]\nomega_body = [0.3, 0.2, 1]\ndamping = 0.1\n\
+                 [time]\nt_span = [0, -20]\n[[events]]\nname = \"z\"\nwhen = \"sin(3*t)\"\nstop_after = 1\n";
+    let told = folder.run(scene).ok();
     assert!(told.contains("ended by event z") && !told.contains("WARNING"), "{told}");
     // Nothing is said of events that come, in either direction, also at the times of rows.
     for (when, more) in [
@@ -337,14 +330,13 @@ fn a_formula_may_have_a_matrix() {
     let text = SCENE.replace("rigid-body", "driven-body").replace("layer = \"closed\"\n", "");
     let run = |torque: &str, lets: &str| {
         let keys = format!("torque = {torque}\nlet = {{ {lets} }}\n[method]");
-        folder.write("scene.toml", &text.replace("[method]", &keys));
-        folder.lieflow(&["run", "scene.toml", "--out", "out", "--no-page"])
+        folder.run(&text.replace("[method]", &keys))
     };
     let matrix = "J = \"[[0.02, 0, 0], [0, 0.05, 0.01], [0, 0.01, 0.06]]\"";
     run("\"-J*w\"", matrix).ok();
     let by_matrix = folder.read("out/trajectory.csv");
     run("[\"-0.02*w1\", \"-0.05*w2 - 0.01*w3\", \"-0.01*w2 - 0.06*w3\"]", "a = 0").ok();
-    let (_, plain) = read_csv(&folder.read("out/trajectory.csv"));
+    let (_, plain) = folder.trajectory();
     for (row, other) in read_csv(&by_matrix).1.iter().zip(&plain) {
         assert!(row.iter().zip(other).all(|(a, b)| (a - b).abs() < 1e-14), "{row:?} {other:?}");
     }
@@ -411,7 +403,7 @@ fn the_last_row_is_there_by_name() {
     folder.write("scene.toml", SCENE);
     folder.lieflow(&["run", "scene.toml", "--out", "out"]).ok();
     let summary = folder.json("out/summary.json");
-    let (columns, rows) = read_csv(&folder.read("out/trajectory.csv"));
+    let (columns, rows) = folder.trajectory();
     for (end, row) in [("initial", &rows[0]), ("final", &rows[rows.len() - 1])] {
         assert_eq!(summary[end].as_object().unwrap().len(), columns.len());
         for (column, x) in columns.iter().zip(row) {

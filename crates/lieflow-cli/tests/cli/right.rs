@@ -68,10 +68,7 @@ fn the_unit_of_a_body_does_not_matter() {
         folder.write("body.toml", &text);
         let told = folder.lieflow(&["run", "body.toml", "--no-page", "--out", "out"]).ok();
         assert!(told.contains(tolerances), "{told}");
-        assert!(
-            folder.json("out/summary.json")["accuracy"]["digits"].as_u64() >= Some(10),
-            "{told}"
-        );
+        assert!(folder.digits() >= Some(10), "{told}");
     }
 }
 
@@ -250,8 +247,7 @@ fn a_pulse_that_all_steps_pass_over_is_told() {
              torque = [\"5*exp(-((t - {middle})/{width})^2)\", 0, 0]\n\
              [time]\nt_span = [0, 100]\n{rtol}\n{limit}\n"
         );
-        folder.write("scene.toml", &text);
-        let told = folder.lieflow(&["run", "scene.toml", "--no-page", "--out", "out"]).ok();
+        let told = folder.run(&text).ok();
         (told, folder.json("out/summary.json"))
     };
     let advice = "h_max = 0.05";
@@ -298,8 +294,7 @@ fn a_pulse_that_the_run_found_is_found_again() {
              torque = [\"5*exp(-((t - {middle})/{width})^2)\", 0, 0]\n\
              [time]\nt_span = [0, 100]\nrtol = {rtol}\n"
         );
-        folder.write("scene.toml", &text);
-        let told = folder.lieflow(&["run", "scene.toml", "--no-page", "--out", "out"]).ok();
+        let told = folder.run(&text).ok();
         assert!(!told.contains("WARNING: "), "{middle}: {told}");
         let summary = folder.json("out/summary.json");
         assert_eq!(summary["accuracy"]["found_by"], "tenth-tolerance");
@@ -342,9 +337,8 @@ fn the_error_check_can_be_switched_off() {
 fn rows_at_equal_times_are_asked_for_by_their_number_or_their_distance() {
     let folder = Folder::new();
     let times = |output: &str| {
-        folder.write("scene.toml", &SCENE.replace("every = 10", output));
-        folder.lieflow(&["run", "scene.toml", "--no-page", "--out", "out"]).ok();
-        let (_, rows) = read_csv(&folder.read("out/trajectory.csv"));
+        folder.run(&SCENE.replace("every = 10", output)).ok();
+        let (_, rows) = folder.trajectory();
         rows.iter().map(|row| row[0]).collect::<Vec<_>>()
     };
     assert_eq!(times("count = 4"), [0.0, 0.5, 1.0, 1.5, 2.0]);
@@ -362,10 +356,10 @@ fn rows_at_equal_times_are_asked_for_by_their_number_or_their_distance() {
         folder.lieflow(&[&run[..], &set].concat())
     };
     set("scene.toml", &["time.t_span=[2, 0]", "output.interval=0.75"]).ok();
-    let (_, rows) = read_csv(&folder.read("out/trajectory.csv"));
+    let (_, rows) = folder.trajectory();
     assert_eq!(rows.iter().map(|row| row[0]).collect::<Vec<_>>(), [2.0, 1.25, 0.5, 0.0]);
     set("flips", &["output.interval=10"]).ok();
-    let (_, rows) = read_csv(&folder.read("out/trajectory.csv"));
+    let (_, rows) = folder.trajectory();
     assert_eq!((rows.len(), rows[7][0]), (9, 70.0));
     let message = set("flips", &["output.count=10"]).refused();
     assert!(
@@ -385,12 +379,10 @@ fn a_jump_at_the_end_of_a_step_is_told() {
              velocity = [\"1\", \"0\", \"0\"]\n[time]\nt_span = [0, 8]\n{method}\n[output]\n\
              quantities = [\"position\", \"attitude\"]\n"
         );
-        folder.write("jump.toml", &text);
-        let told = folder.lieflow(&["run", "jump.toml", "--out", "out", "--no-page"]).ok();
-        let (names, rows) = read_csv(&folder.read("out/trajectory.csv"));
+        let told = folder.run(&text).ok();
+        let (names, rows) = folder.trajectory();
         let last = |name: &str| rows[rows.len() - 1][names.iter().position(|n| n == name).unwrap()];
-        let digits = folder.json("out/summary.json")["accuracy"]["digits"].as_u64().unwrap();
-        (last("g21").atan2(last("g11")), digits as f64, told)
+        (last("g21").atan2(last("g11")), folder.digits().unwrap() as f64, told)
     };
     for (t0, method, rtol) in [
         (6.995, "magnus4", "1e-6"),
@@ -435,10 +427,10 @@ fn settings_change_a_scene() {
     .ok();
     let summary = folder.json("out/summary.json");
     assert_eq!((&summary["dt"], &summary["method"]["map"]), (&json!(0.1), &json!("cay")));
-    let (_, rows) = read_csv(&folder.read("out/trajectory.csv"));
+    let (_, rows) = folder.trajectory();
     assert_eq!(rows[0][1..4], [0.6000000000000001, 0.0, 1.0]);
     run(&["problem.inertia=[[sqrt(9), 0, 0], [0, 2.5, 0], [0, 0, cos(0)]]"]).ok();
-    let (_, rows) = read_csv(&folder.read("out/trajectory.csv"));
+    let (_, rows) = folder.trajectory();
     assert_eq!(rows[0][1..4], [0.6000000000000001, 0.0, 1.0]);
     run(&["method=", "time.dt=", "time.rtol=1e-9"]).ok();
     let summary = folder.json("out/summary.json");
@@ -585,7 +577,7 @@ fn the_exact_motion_has_the_digits_that_its_start_has() {
         );
         folder.write("scene.toml", &text);
         let told = folder.lieflow(&["run", "scene.toml", "--out", "out"]).ok();
-        (told, folder.json("out/summary.json")["accuracy"]["digits"].as_u64().unwrap())
+        (told, folder.digits().unwrap())
     };
     let (told, digits) = scene("[1, 0.3, 0.5773502691896257]");
     assert!(told.contains("the last digits of the start move `attitude` by"), "{told}");

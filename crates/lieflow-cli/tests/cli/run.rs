@@ -321,7 +321,7 @@ fn adaptive_runs_reach_their_tolerance_and_say_what_they_did() {
             folder.lieflow(&["run", "scene.toml", "--out", "out"]).ok();
             let summary = folder.json("out/summary.json");
             let chosen = &summary["adaptive"];
-            let (_, rows) = read_csv(&folder.read("out/trajectory.csv"));
+            let (_, rows) = folder.trajectory();
             assert_eq!(chosen["accepted"].as_u64().unwrap() as usize + 1, rows.len(), "{method}");
             assert_eq!(summary["steps"], chosen["accepted"]);
             assert!(summary["dt"].is_null() && chosen["rejected"].is_number());

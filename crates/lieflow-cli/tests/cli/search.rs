@@ -1,7 +1,7 @@
 //! What both runs of an estimate pass over: jumps after the last node of a step, and advices that are put through the same
 //! search.
 
-use crate::support::{Folder, read_csv};
+use crate::support::Folder;
 
 /// A number x with this derivative, from 1 over the span.
 fn scene(field: &str, span: &str, method: &str, time: &str, output: &str) -> String {
@@ -13,11 +13,9 @@ fn scene(field: &str, span: &str, method: &str, time: &str, output: &str) -> Str
 
 /// What the program says of a scene, the digits that it states, and the times and values of its rows.
 fn run(folder: &Folder, scene: &str) -> (String, Option<u64>, Vec<[f64; 2]>) {
-    folder.write("scene.toml", scene);
-    let told = folder.lieflow(&["run", "scene.toml", "--out", "out", "--no-page"]).ok();
-    let digits = folder.json("out/summary.json")["accuracy"]["digits"].as_u64();
-    let (_, rows) = read_csv(&folder.read("out/trajectory.csv"));
-    (told, digits, rows.iter().map(|row| [row[0], row[1]]).collect())
+    let told = folder.run(scene).ok();
+    let (_, rows) = folder.trajectory();
+    (told, folder.digits(), rows.iter().map(|row| [row[0], row[1]]).collect())
 }
 
 fn named(method: &str) -> String {

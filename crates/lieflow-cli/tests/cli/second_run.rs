@@ -1,6 +1,6 @@
 //! What a second run says of the error of a run, and what a run that is wrong is advised to do.
 
-use crate::support::{Folder, read_csv};
+use crate::support::Folder;
 
 /// A point that turns at this rate, by this method, to this time.
 fn turning(rate: &str, method: &str, end: &str) -> String {
@@ -20,7 +20,7 @@ fn a_step_beyond_the_span_is_halved() {
     for dt in ["1.0", "1.8", "1.999", "2.0", "3.0", "1e9"] {
         let set = format!("time.dt={dt}");
         folder.lieflow(&["run", "turn.toml", "--set", &set, "--out", "out", "--no-page"]).ok();
-        let digits = folder.json("out/summary.json")["accuracy"]["digits"].as_u64().unwrap();
+        let digits = folder.digits().unwrap();
         // The error is 8e-3.
         assert_eq!(digits, 2, "dt = {dt}");
     }
@@ -40,7 +40,7 @@ fn advice_after_a_run_that_blew_up_is_right() {
         let digits: i32 = digits.split(' ').find_map(|word| word.parse().ok()).unwrap();
         let set = format!("time.dt={advised}");
         folder.lieflow(&[&run[..], &[&set]].concat()).ok();
-        let (_, rows) = read_csv(&folder.read("out/trajectory.csv"));
+        let (_, rows) = folder.trajectory();
         let last = &rows[rows.len() - 1];
         let error = (last[1] - 100f64.cos()).hypot(last[2] + 100f64.sin());
         assert!(error < 10f64.powi(1 - digits), "dt = {dt}: {advised}, {digits}: {error:e}");
@@ -93,8 +93,7 @@ fn a_period_that_divides_the_steps_is_told() {
              torque = [\"0.1*sin(80*pi*t)^2\", 0, 0]\n[method]\nname = \"rkmk4\"\n\
              [time]\nt_span = [0, 10]\ndt = {dt}\n"
         );
-        folder.write("scene.toml", &text);
-        let told = folder.lieflow(&["run", "scene.toml", "--no-page", "--out", "out"]).ok();
+        let told = folder.run(&text).ok();
         let summary = folder.json("out/summary.json");
         let digits = summary["accuracy"]["digits"].as_u64().unwrap();
         assert_eq!(digits <= 1, is_hidden, "{dt}: {told}");
@@ -112,8 +111,7 @@ fn a_jump_between_two_steps_is_none_within_a_part() {
              torque = [\"{torque}\", 0, 0]\n[method]\nname = \"gauss4\"\n\
              [time]\nt_span = [0, 5]\ndt = 0.01\n"
         );
-        folder.write("scene.toml", &text);
-        let told = folder.lieflow(&["run", "scene.toml", "--no-page", "--out", "out"]).ok();
+        let told = folder.run(&text).ok();
         let accuracy = &folder.json("out/summary.json")["accuracy"];
         assert!(accuracy["digits"].as_u64().unwrap() >= 8, "{told}");
         assert!(!told.contains("WARNING"), "{told}");

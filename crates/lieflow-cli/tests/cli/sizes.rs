@@ -20,8 +20,7 @@ const BODIES: [&str; 3] = [
 fn said(folder: &Folder, body: &str, size: f64, dt: &str) -> String {
     let time = format!("[method]\nname = \"rkmk4\"\n[time]\nt_span = [0, 20]\ndt = {dt}\n");
     let body = body.replace("SIZE", &format!("{size:e}"));
-    folder.write("scene.toml", &format!("[problem]\n{body}{time}"));
-    let out = folder.lieflow(&["run", "scene.toml", "--no-page", "--out", "out"]).ok();
+    let out = folder.run(&format!("[problem]\n{body}{time}")).ok();
     let is_of = |line: &&str| {
         ["conserved", "energy: ", "momentum_norm: ", "error, ", "about ", "no digit"]
             .iter()
@@ -115,7 +114,7 @@ fn a_body_that_comes_to_rest_is_right() {
         folder.write("scene.toml", &text.replace("END", end));
         let args = ["run", "scene.toml", "--no-page", "--out", "out", "--error-check", "always"];
         let out = folder.lieflow(&args).ok();
-        let digits = folder.json("out/summary.json")["accuracy"]["digits"].as_u64();
+        let digits = folder.digits();
         assert!(digits.is_some_and(|digits| digits >= 5), "{end}: {digits:?}");
         assert!(!out.contains("WARNING"), "{end}: {out}");
     }

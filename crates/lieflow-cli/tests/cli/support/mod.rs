@@ -48,6 +48,19 @@ impl Folder {
     pub fn lieflow(&self, args: &[&str]) -> Run {
         Run::from(self.command(args).output().unwrap())
     }
+    /// Run a scene here, without a page. What it writes is in `out`.
+    pub fn run(&self, scene: &str) -> Run {
+        self.write("scene.toml", scene);
+        self.lieflow(&["run", "scene.toml", "--out", "out", "--no-page"])
+    }
+    /// The digits that the run in `out` states.
+    pub fn digits(&self) -> Option<u64> {
+        self.json("out/summary.json")["accuracy"]["digits"].as_u64()
+    }
+    /// The trajectory of the run in `out`: the names of its columns, and its rows.
+    pub fn trajectory(&self) -> (Vec<String>, Vec<Vec<f64>>) {
+        read_csv(&self.read("out/trajectory.csv"))
+    }
     /// `lieflow`, to be run here.
     pub fn command(&self, args: &[&str]) -> Command {
         self.command_of(&program(), args)
