@@ -134,14 +134,12 @@ impl Between {
         self.note_value((self.value)(t, row), (t, row));
     }
 
-    /// What was seen so far, also where no row is: the largest absolute value, and whether each value is rounding.
-    pub(super) fn seen(&self) -> [f64; 2] {
-        [self.largest_anywhere, f64::from(u8::from(self.is_rounding))]
-    }
-
-    /// Goes on from what an earlier part of the run has seen.
-    pub(super) fn go_on_from(&mut self, [largest, is_rounding]: [f64; 2]) {
-        (self.largest_anywhere, self.is_rounding) = (largest, is_rounding != 0.0);
+    /// Calls `each` with the numbers that were seen where no row is, too.
+    pub(super) fn each_unshown(&mut self, each: &mut dyn FnMut(&mut f64)) {
+        let mut is_rounding = f64::from(u8::from(self.is_rounding));
+        each(&mut self.largest_anywhere);
+        each(&mut is_rounding);
+        self.is_rounding = is_rounding != 0.0;
     }
 
     /// A value of the function with this row.

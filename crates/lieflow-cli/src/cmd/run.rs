@@ -246,7 +246,7 @@ pub fn run_scene(
             }
             false => kept.see(kind, t, schema.row(numbers)),
         })?;
-        kept.go_on_from(&seen);
+        kept.go_on_from(seen);
     }
     let begun_at = kept.rows.ends().map_or(scene.grid.t_span()[0], |[_, (t, _)]| t);
     kept.state = Some(state);

@@ -337,26 +337,20 @@ impl<'a> Recorder<'a> {
         self.room.check(self.bytes())
     }
 
-    /// The numbers that the rows alone do not bring back, because they were seen between rows. Each written quantity and each
-    /// event has two. Each invariant has its largest drift, or -1 if it has no drift yet.
-    fn seen_anywhere(&self) -> Seen {
-        let singular = self.singular.iter().flat_map(|&(far, t)| [far, t]);
-        let between = self.between.iter().flat_map(Between::seen);
-        let drifts = self.watched.iter().map(|law| law.at_ends_of_steps().unwrap_or(-1.0));
-        singular.chain(between).chain(drifts).collect()
+    /// Calls `each` with the numbers that the rows alone do not bring back, because they were seen between rows.
+    fn each_unshown(&mut self, each: &mut dyn FnMut(&mut f64)) {
+        for (far, t) in &mut self.singular {
+            each(far);
+            each(t);
+        }
+        self.between.iter_mut().for_each(|between| between.each_unshown(each));
+        self.watched.iter_mut().for_each(|law| law.each_unshown(each));
     }
 
     /// Goes on from what an earlier part of the run has seen, once its rows are shown again. At the start that is nothing.
-    pub(super) fn go_on_from(&mut self, seen: &[f64]) {
-        let (pairs, _) = seen.as_chunks();
-        let (of_angles, of_events) = pairs.split_at(self.singular.len().min(pairs.len()));
-        let singular = self.singular.iter_mut().zip(of_angles);
-        singular.for_each(|(nearest, &[far, t])| *nearest = (far, t));
-        let between = self.between.iter_mut().zip(of_events);
-        between.for_each(|(between, seen)| between.go_on_from(*seen));
-        let drifts = seen.iter().skip(2 * (self.singular.len() + self.between.len()));
-        let drifts = drifts.map(|&x| (x != -1.0).then_some(x));
-        self.watched.iter_mut().zip(drifts).for_each(|(law, drift)| law.go_on_from(drift));
+    pub(super) fn go_on_from(&mut self, seen: Seen) {
+        let mut seen = seen.into_iter();
+        self.each_unshown(&mut |x| *x = seen.next().unwrap_or(*x));
     }
 
     /// How near the Euler angles of a row are to where they are singular.
@@ -470,7 +464,8 @@ impl Watcher for Recorder<'_> {
     fn state(&mut self, bytes: &[u8]) {
         if !self.has_ended() {
             let done = self.flush();
-            let seen = self.seen_anywhere();
+            let mut seen = Seen::new();
+            self.each_unshown(&mut |x| seen.push(*x));
             let done = done.and_then(|()| match &mut self.state {
                 Some(state) => state.save(&seen, bytes),
                 None => Ok(()),

@@ -549,14 +549,11 @@ impl Watched {
         self.drift.see_end_of_step(value);
     }
 
-    /// The largest drift at the ends of steps so far.
-    pub fn at_ends_of_steps(&self) -> Option<f64> {
-        self.drift.largest_at_ends_of_steps
-    }
-
-    /// Goes on from the largest drift at the ends of steps of an earlier part of the run.
-    pub fn go_on_from(&mut self, at_ends_of_steps: Option<f64>) {
-        self.drift.largest_at_ends_of_steps = at_ends_of_steps;
+    /// Calls `each` with the largest drift at the ends of steps so far; −1 if there is none.
+    pub fn each_unshown(&mut self, each: &mut dyn FnMut(&mut f64)) {
+        let mut largest = self.drift.largest_at_ends_of_steps.unwrap_or(-1.0);
+        each(&mut largest);
+        self.drift.largest_at_ends_of_steps = (largest != -1.0).then_some(largest);
     }
 
     /// What was seen. `steps` is the number of steps of the run.
