@@ -116,7 +116,14 @@ impl<'a> Judge<'a> {
         longest: Duration,
         stop: &'a AtomicBool,
     ) -> Result<Self, CliError> {
-        let (mut judge, model) = Self::without_end(scene, quantities, t_span, stop)?;
+        let state = scene.problem.state(quantities);
+        let judged = [state, &scene.problem.invariants(quantities)].concat();
+        // The first layer of the problem.
+        let layer = scene.problem.layers().first().copied().unwrap_or(scene.layer);
+        let model = scene.model_with(layer, &judged)?;
+        let (schema, reference) = (model.schema().clone(), Reference::Exact { rounding: None });
+        let (end, within, course) = (Vec::new(), Vec::new(), Course::of(scene, t_span));
+        let mut judge = Judge { state, course, schema, end, within, reference, stop };
         match model.exact(t_span) {
             Some(Ok(exact)) => {
                 judge.end = exact;
@@ -128,38 +135,6 @@ impl<'a> Judge<'a> {
             _ => judge.find_end(&model)?,
         }
         Ok(judge)
-    }
-
-    /// A judge with a reference of two runs, whether an exact solution is known or not.
-    ///
-    /// # Errors
-    /// As [`new`](Self::new).
-    pub fn by_two_runs(
-        scene: &Scene,
-        quantities: &[&str],
-        t_span: [f64; 2],
-        stop: &'a AtomicBool,
-    ) -> Result<Self, CliError> {
-        let (mut judge, model) = Self::without_end(scene, quantities, t_span, stop)?;
-        judge.find_end(&model)?;
-        Ok(judge)
-    }
-
-    /// A judge that knows no end yet, and the model that a reference is computed with.
-    fn without_end(
-        scene: &Scene,
-        quantities: &[&str],
-        t_span: [f64; 2],
-        stop: &'a AtomicBool,
-    ) -> Result<(Self, Model), CliError> {
-        let state = scene.problem.state(quantities);
-        let judged = [state, &scene.problem.invariants(quantities)].concat();
-        // The first layer of the problem.
-        let layer = scene.problem.layers().first().copied().unwrap_or(scene.layer);
-        let model = scene.model_with(layer, &judged)?;
-        let (schema, reference) = (model.schema().clone(), Reference::Exact { rounding: None });
-        let (end, within, course) = (Vec::new(), Vec::new(), Course::of(scene, t_span));
-        Ok((Judge { state, course, schema, end, within, reference, stop }, model))
     }
 
     /// Takes the end of two runs. If a run in short steps ends elsewhere, both passed over something short, such as a pulse.
