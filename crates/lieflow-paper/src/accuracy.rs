@@ -99,15 +99,19 @@ impl Accuracy {
 
     /// What it costs to reach the error of this place in [`EPSILONS`].
     pub fn cost(&self, e: usize) -> Cost {
-        let n = self.log_steps(EPSILONS[e]);
+        let epsilon = EPSILONS[e];
+        // The paper takes all runs.
+        let n = self.log_steps(epsilon, |_| true).unwrap_or(f64::NAN);
+        // Those near rounding, and those that failed, say nothing of the order.
+        let clear = self.log_steps(epsilon, |run| run.error >= ROUNDING);
         Cost {
             printed: self.print().map(|printed| printed.printed[self.test][e]),
             ours: self.printed_step().map(|ops| n + ops.log10()),
-            counted: self.log_steps_above_rounding(EPSILONS[e]).zip(self.counted_step()).map(
-                // No run is shorter than a step.
-                |(n, ops)| n.max(0.0) + (ops as f64).log10(),
-            ),
-            seconds: self.seconds_to(EPSILONS[e]),
+            // No run is shorter than a step.
+            counted: clear
+                .zip(self.counted_step())
+                .map(|(n, ops)| n.max(0.0) + (ops as f64).log10()),
+            seconds: self.seconds_to(epsilon),
         }
     }
 
@@ -117,20 +121,11 @@ impl Accuracy {
     }
 
     /// log₁₀ of the number of steps that reach ε, as the paper reads it: on the line of least squares
-    /// through log cost against log error of its six runs.
-    pub fn log_steps(&self, epsilon: f64) -> f64 {
-        logs_of(self.printed()).collect::<Fit>().at(epsilon.log10()).unwrap_or(f64::NAN)
-    }
-
-    /// The same without runs whose error is near rounding, and without those that failed; none where fewer than three
-    /// runs are left.
-    fn log_steps_above_rounding(&self, epsilon: f64) -> Option<f64> {
-        let runs = self.printed().iter().filter(|p| p.error >= ROUNDING);
-        let logs: Vec<_> = logs_of(runs).collect();
-        if logs.len() < 3 {
-            return None;
-        }
-        logs.into_iter().collect::<Fit>().at(epsilon.log10())
+    /// through log cost against log error of those of its six runs that count. None where fewer than three do.
+    fn log_steps(&self, epsilon: f64, counts: impl Fn(&AccuracyPoint) -> bool) -> Option<f64> {
+        let runs: Vec<_> = self.printed().iter().filter(|run| counts(run)).collect();
+        let logs = runs.iter().map(|run| (run.error.log10(), (run.steps as f64).log10()));
+        logs.collect::<Fit>().at(epsilon.log10()).filter(|_| runs.len() >= 3)
     }
 
     /// The CPU time that reaches ε, between two runs by the line through them in the logarithms; none
@@ -143,13 +138,6 @@ impl Accuracy {
         let share = (a.error / epsilon).ln() / (a.error / b.error).ln();
         Some((a.seconds.ln() + share * (b.seconds / a.seconds).ln()).exp())
     }
-}
-
-/// The logarithms of error and number of steps.
-fn logs_of<'a>(
-    runs: impl IntoIterator<Item = &'a AccuracyPoint>,
-) -> impl Iterator<Item = (f64, f64)> {
-    runs.into_iter().map(|p| (p.error.log10(), (p.steps as f64).log10()))
 }
 
 /// Measure every method with an attitude in the test of this place in [`TESTS`], in rounds that take turns.
