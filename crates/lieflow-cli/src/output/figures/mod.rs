@@ -362,9 +362,9 @@ fn own_figure(summary: &Summary, run: &Drawn<'_>, figure: Figure) -> Vec<Block> 
     }
 }
 
-fn said(name: &str, drawn: usize, all: usize) -> String {
-    match drawn < all {
-        true => format!("The first {drawn} of {all} parts of {name}."),
+fn said(name: &str, parts: usize) -> String {
+    match LINE_COLOURS < parts {
+        true => format!("The first {LINE_COLOURS} of {parts} parts of {name}."),
         false => String::new(),
     }
 }
@@ -397,7 +397,7 @@ fn plane(
         names.map(|name| words::column(name)).collect::<Vec<_>>().join(", ")
     };
     let axes = [axis(0), axis(1)].map(|name| Axis::new(name, Scale::Linear));
-    let caption = said(quantity.name, pairs.min(LINE_COLOURS), pairs);
+    let caption = said(quantity.name, pairs);
     Chart::new(id, title, axes, series).with_caption(caption)
 }
 
@@ -424,7 +424,7 @@ fn space(id: String, title: String, summary: &Summary, run: &Drawn<'_>) -> Space
     };
     let caption = format!(
         "{} From the ring to the dot; the grey line is the shadow on the floor.",
-        said(quantity.name, triples.min(LINE_COLOURS), triples)
+        said(quantity.name, triples)
     );
     Space {
         id,
@@ -491,10 +491,7 @@ fn sphere(id: String, title: String, run: &Drawn<'_>) -> Sphere {
         true => "",
         false => "Each vector is divided by its length at the start.",
     };
-    let caption = format!(
-        "{} {shown} {scaled} {surfaces}",
-        said(quantity.name, triples.min(LINE_COLOURS), triples)
-    );
+    let caption = format!("{} {shown} {scaled} {surfaces}", said(quantity.name, triples));
     Sphere {
         id,
         title,
