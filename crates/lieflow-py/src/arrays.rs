@@ -187,6 +187,55 @@ pub(crate) fn fill<'py, const N: usize>(
     }
 }
 
+/// The result of f on the numbers of an argument of this name. An element has the last axes `from`, and its result `to`.
+pub(crate) fn map_one<'py>(
+    (name, from, to): (&str, &[usize], &[usize]),
+    x: &Bound<'py, PyAny>,
+    out: Option<&Bound<'py, PyAny>>,
+    mut f: impl FnMut(&[f64], &mut [f64]) -> Result<(), Error> + Send,
+) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    let py = x.py();
+    let mut x = Input::new(name, x, from)?;
+    let lead = x.lead().to_vec();
+    let out = output(py, (&lead, to), out, &mut [&mut x])?;
+    let size = from.iter().product();
+    fill(py, &[(name, x.numbers(), size)], (out, &lead), |[x], out| f(x, out))
+}
+
+/// The same of two arguments. Their elements and the results have these last axes.
+pub(crate) fn map_two<'py>(
+    (names, tail): ([&str; 2], &[usize]),
+    (a, b): (&Bound<'py, PyAny>, &Bound<'py, PyAny>),
+    out: Option<&Bound<'py, PyAny>>,
+    f: impl FnMut([&[f64]; 2], &mut [f64]) -> Result<(), Error> + Send,
+) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    let py = a.py();
+    let both = (Input::new(names[0], a, tail)?, Input::new(names[1], b, tail)?);
+    let (lead, mut a, mut b) = common(names, both)?;
+    let out = output(py, (&lead, tail), out, &mut [&mut a, &mut b])?;
+    let size = tail.iter().product();
+    let inputs = [(names[0], a.numbers(), size), (names[1], b.numbers(), size)];
+    fill(py, &inputs, (out, &lead), f)
+}
+
+/// f on each element of `size` numbers, and on its result of `to` numbers. A single element stands for all.
+pub(crate) fn each<const N: usize>(
+    inputs: [&[f64]; N],
+    out: &mut [f64],
+    [size, to]: [usize; 2],
+    mut f: impl FnMut([&[f64]; N], &mut [f64]) -> Result<(), Error>,
+) -> Result<(), Error> {
+    let count = out.len() / to;
+    for (index, out) in out.chunks_exact_mut(to).enumerate() {
+        let element = inputs.map(|x| match x.len() == size && count != 1 {
+            true => x,
+            false => &x[size * index..][..size],
+        });
+        f(element, out).map_err(|error| Error::Element { index, source: Box::new(error) })?;
+    }
+    Ok(())
+}
+
 /// Why elements were not all taken.
 pub(crate) enum Stopped {
     /// One of them cannot be used.

@@ -15,7 +15,7 @@ use pyo3::prelude::*;
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
 
-use crate::arrays::{Input, common, fill, output};
+use crate::arrays::{each, fill, map_one, map_two, output};
 use crate::error::{argument, refused};
 
 /// How far from 𝔤 or from the group an argument may be, relative to its size: as a start of a run.
@@ -60,46 +60,30 @@ impl MatrixGroup {
         out: Option<&Bound<'py, PyAny>>,
         f: impl Fn(&[f64]) -> Result<Mat<f64>, Error> + Send + Sync,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        let (py, n) = (x.py(), self.0.n());
-        let mut x = Input::new(name, x, &[n, n])?;
-        let lead = x.lead().to_vec();
-        let out = output(py, (&lead, &[n, n]), out, &mut [&mut x])?;
-        let numbers = x.numbers();
-        fill(py, &[(name, numbers, n * n)], (out, &lead), |[numbers], out| {
-            let rows = numbers.chunks_exact(n * n).zip(out.chunks_exact_mut(n * n));
-            for (index, (x, out)) in rows.enumerate() {
-                let value =
-                    f(x).map_err(|error| Error::Element { index, source: Box::new(error) })?;
-                write(&value, out);
-            }
-            Ok(())
+        let n = self.0.n();
+        map_one((name, &[n, n], &[n, n]), x, out, |x, out| {
+            each([x], out, [n * n, n * n], |[x], out| {
+                write(&f(x)?, out);
+                Ok(())
+            })
         })
     }
 
     fn two<'py>(
         &self,
-        (u, v): (&Bound<'py, PyAny>, &Bound<'py, PyAny>),
+        both: (&Bound<'py, PyAny>, &Bound<'py, PyAny>),
         out: Option<&Bound<'py, PyAny>>,
         f: impl Fn(&AlgebraMatrix, &AlgebraMatrix) -> Result<AlgebraMatrix, Error> + Send + Sync,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        let (py, n) = (u.py(), self.0.n());
-        let both = (Input::new("u", u, &[n, n])?, Input::new("v", v, &[n, n])?);
-        let (lead, mut u, mut v) = common(["u", "v"], both)?;
-        let out = output(py, (&lead, &[n, n]), out, &mut [&mut u, &mut v])?;
-        let (a, b, size) = (u.numbers(), v.numbers(), n * n);
-        fill(py, &[("u", a, size), ("v", b, size)], (out, &lead), |[a, b], out| {
-            let count = out.len() / size;
-            let step = |x: &[f64]| if x.len() == size && count != 1 { 0 } else { size };
-            let steps = [step(a), step(b)];
-            for (index, out) in out.chunks_exact_mut(size).enumerate() {
-                let u = self.algebra(&a[steps[0] * index..][..size]);
-                let v = self.algebra(&b[steps[1] * index..][..size]);
-                let value = u.and_then(|u| f(&u, &v.map_err(|error| error.about("v"))?));
-                let value =
-                    value.map_err(|error| Error::Element { index, source: Box::new(error) })?;
+        let n = self.0.n();
+        map_two((["u", "v"], &[n, n]), both, out, |both, out| {
+            each(both, out, [n * n, n * n], |[u, v], out| {
+                let u = self.algebra(u)?;
+                let v = self.algebra(v).map_err(|error| error.about("v"))?;
+                let value = f(&u, &v)?;
                 write(&value, out);
-            }
-            Ok(())
+                Ok(())
+            })
         })
     }
 }
@@ -153,23 +137,18 @@ impl MatrixGroup {
         u: &Bound<'py, PyAny>,
         out: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        let (py, n) = (u.py(), self.0.n());
-        let mut u = Input::new("u", u, &[n, n])?;
-        let lead = u.lead().to_vec();
-        let out = output(py, (&lead, &[n, n]), out, &mut [&mut u])?;
-        let numbers = u.numbers();
+        let n = self.0.n();
         let structure = match self.0.form() {
             Form::Identity => Structure::Skew,
             _ => Structure::General,
         };
-        fill(py, &[("u", numbers, n * n)], (out, &lead), |[numbers], out| {
-            let mut elements = vec![0.0; numbers.len()];
-            let rows = numbers.chunks_exact(n * n).zip(elements.chunks_exact_mut(n * n));
-            for (index, (u, element)) in rows.enumerate() {
-                let u = self.algebra(u);
-                let u = u.map_err(|error| Error::Element { index, source: Box::new(error) })?;
+        map_one(("u", &[n, n], &[n, n]), u, out, |u, out| {
+            let mut elements = vec![0.0; u.len()];
+            each([u], &mut elements, [n * n, n * n], |[u], element| {
+                let u = self.algebra(u)?;
                 write(&u, element);
-            }
+                Ok(())
+            })?;
             crate::expm::real(n, &elements, structure, out)
         })
     }
@@ -315,13 +294,9 @@ impl MatrixGroup {
     /// inverse or is not finite.
     #[pyo3(signature = (g))]
     fn defect<'py>(&self, g: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        let (py, n) = (g.py(), self.0.n());
-        let mut g = Input::new("g", g, &[n, n])?;
-        let lead = g.lead().to_vec();
-        let out = output(py, (&lead, &[]), None, &mut [&mut g])?;
-        let numbers = g.numbers();
-        fill(py, &[("g", numbers, n * n)], (out, &lead), |[numbers], out| {
-            for (g, out) in numbers.chunks_exact(n * n).zip(out) {
+        let n = self.0.n();
+        map_one(("g", &[n, n], &[]), g, None, |g, out| {
+            for (g, out) in g.chunks_exact(n * n).zip(out) {
                 *out = match self.0.element(matrix(n, g)) {
                     Err(Error::Reflection { .. }) => 2.0,
                     Err(Error::Determinant { re, .. }) => (re - 1.0).abs(),

@@ -7,7 +7,7 @@ use nalgebra::{Matrix3, Vector3};
 use numpy::PyArrayDyn;
 use pyo3::prelude::*;
 
-use crate::arrays::{Input, common, fill, output};
+use crate::arrays::{each, map_one, map_two};
 
 const GROUP: Se3 = Se3::new();
 /// How far a matrix may be from a rotation, and its last row from 0 0 0 1: the sum over its entries.
@@ -49,54 +49,27 @@ fn write_element((r, x): &Element, out: &mut [f64]) {
     out[12..].copy_from_slice(&[0.0, 0.0, 0.0, 1.0]);
 }
 
-/// f on each element.
-fn each(
-    (x, from): (&[f64], usize),
-    (out, to): (&mut [f64], usize),
-    mut f: impl FnMut(&[f64], &mut [f64]) -> Result<(), Error>,
-) -> Result<(), Error> {
-    for (index, (x, out)) in x.chunks_exact(from).zip(out.chunks_exact_mut(to)).enumerate() {
-        f(x, out).map_err(|error| Error::Element { index, source: Box::new(error) })?;
-    }
-    Ok(())
-}
-
 fn one<'py>(
     (name, from, to): (&str, &[usize], &[usize]),
     f: fn(&[f64], &mut [f64]) -> Result<(), Error>,
     x: &Bound<'py, PyAny>,
     out: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-    let py = x.py();
-    let mut x = Input::new(name, x, from)?;
-    let lead = x.lead().to_vec();
-    let out = output(py, (&lead, to), out, &mut [&mut x])?;
-    let (numbers, sizes) = (x.numbers(), [from, to].map(|tail| tail.iter().product()));
-    fill(py, &[(name, numbers, sizes[0])], (out, &lead), |[x], out| {
-        each((x, sizes[0]), (out, sizes[1]), f)
-    })
+    let sizes = [from, to].map(|tail| tail.iter().product());
+    map_one((name, from, to), x, out, |x, out| each([x], out, sizes, |[x], out| f(x, out)))
 }
 
 fn two<'py>(
     f: fn(&Pair, &Pair) -> Result<Pair, Error>,
-    (u, v): (&Bound<'py, PyAny>, &Bound<'py, PyAny>),
+    both: (&Bound<'py, PyAny>, &Bound<'py, PyAny>),
     out: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-    let py = u.py();
-    let both = (Input::new("u", u, &[6])?, Input::new("v", v, &[6])?);
-    let (lead, mut u, mut v) = common(["u", "v"], both)?;
-    let out = output(py, (&lead, &[6]), out, &mut [&mut u, &mut v])?;
-    let (a, b) = (u.numbers(), v.numbers());
-    fill(py, &[("u", a, 6), ("v", b, 6)], (out, &lead), |[a, b], out| {
-        let step = |x: &[f64], n: usize| if x.len() == 6 && n != 1 { 0 } else { 6 };
-        let n = out.len() / 6;
-        let steps = [step(a, n), step(b, n)];
-        for (index, out) in out.chunks_exact_mut(6).enumerate() {
-            let (u, v) = (pair(&a[steps[0] * index..]), pair(&b[steps[1] * index..]));
-            let w = f(&u, &v).map_err(|error| Error::Element { index, source: Box::new(error) })?;
-            write_pair(&w, out);
-        }
-        Ok(())
+    map_two((["u", "v"], &[6]), both, out, |both, out| {
+        each(both, out, [6, 6], |both, out| {
+            let [u, v] = both.map(pair);
+            write_pair(&f(&u, &v)?, out);
+            Ok(())
+        })
     })
 }
 

@@ -1,42 +1,10 @@
 //! The maps of so(3) and SO(3) on arrays.
 
-use lieflow::Error;
 use lieflow::so3::batch::rows;
 use numpy::PyArrayDyn;
 use pyo3::prelude::*;
 
-use crate::arrays::{Input, common, fill, output};
-
-type Result1 = fn(&[f64], &mut [f64]) -> Result<(), Error>;
-type Result2 = fn(&[f64], &[f64], &mut [f64]) -> Result<(), Error>;
-
-fn one<'py>(
-    (name, from, to): (&str, &[usize], &[usize]),
-    map: Result1,
-    x: &Bound<'py, PyAny>,
-    out: Option<&Bound<'py, PyAny>>,
-) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-    let py = x.py();
-    let mut x = Input::new(name, x, from)?;
-    let lead = x.lead().to_vec();
-    let out = output(py, (&lead, to), out, &mut [&mut x])?;
-    let numbers = x.numbers();
-    fill(py, &[(name, numbers, from.iter().product())], (out, &lead), |[x], out| map(x, out))
-}
-
-fn two<'py>(
-    second: &str,
-    map: Result2,
-    (u, v): (&Bound<'py, PyAny>, &Bound<'py, PyAny>),
-    out: Option<&Bound<'py, PyAny>>,
-) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-    let py = u.py();
-    let both = (Input::new("u", u, &[3])?, Input::new(second, v, &[3])?);
-    let (lead, mut u, mut v) = common(["u", second], both)?;
-    let out = output(py, (&lead, &[3]), out, &mut [&mut u, &mut v])?;
-    let (a, b) = (u.numbers(), v.numbers());
-    fill(py, &[("u", a, 3), (second, b, 3)], (out, &lead), |[u, v], out| map(u, v, out))
-}
+use crate::arrays::{map_one, map_two};
 
 /// The functions, each with its first line of help.
 macro_rules! maps {
@@ -56,7 +24,7 @@ macro_rules! maps {
             $x: &Bound<'py, PyAny>,
             out: Option<&Bound<'py, PyAny>>,
         ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-            one((stringify!($x), &$from, &$to), $map, $x, out)
+            map_one((stringify!($x), &$from, &$to), $x, out, $map)
         })*
         $(#[doc = $doc2]
         #[doc = ""]
@@ -72,7 +40,7 @@ macro_rules! maps {
             $y: &Bound<'py, PyAny>,
             out: Option<&Bound<'py, PyAny>>,
         ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-            two(stringify!($y), $map2, (u, $y), out)
+            map_two((["u", stringify!($y)], &[3]), (u, $y), out, |[u, v], out| $map2(u, v, out))
         })*
         pub(crate) fn add(m: &Bound<'_, PyModule>) -> PyResult<()> {
             $(m.add_function(wrap_pyfunction!($name, m)?)?;)*
