@@ -495,27 +495,6 @@ impl<M: Metric, const N: usize> Metric for [M; N] {
     }
 }
 
-impl<M: LinearSpace, const N: usize> LinearSpace for [M; N] {
-    #[inline]
-    fn clear(&mut self) {
-        self.iter_mut().for_each(M::clear);
-    }
-    #[inline]
-    fn add(&mut self, a: M::Scalar, x: &Self) {
-        for (y, x) in self.iter_mut().zip(x) {
-            y.add(a, x);
-        }
-    }
-    #[inline]
-    fn dot(&self, x: &Self) -> M::Scalar {
-        self.iter().zip(x).fold(M::Scalar::lit(0.0), |sum, (y, x)| sum + y.dot(x))
-    }
-    #[inline]
-    fn is_finite(&self) -> bool {
-        self.iter().all(M::is_finite)
-    }
-}
-
 /// √Σx².
 #[inline]
 fn norm<S: Real>(sizes: impl Iterator<Item = S>) -> S {
@@ -554,23 +533,32 @@ impl<M: Metric> Metric for Box<[M]> {
     }
 }
 
-impl<A: LinearSpace> LinearSpace for Box<[A]> {
-    #[inline]
-    fn clear(&mut self) {
-        self.iter_mut().for_each(A::clear);
-    }
-    #[inline]
-    fn add(&mut self, a: A::Scalar, x: &Self) {
-        for (y, x) in self.iter_mut().zip(x) {
-            y.add(a, x);
+/// [`LinearSpace`] of entries in a row: each function goes through them.
+macro_rules! entry_by_entry {
+    ($([$($const:tt)*] $Entries:ty;)*) => {$(
+        impl<M: LinearSpace, $($const)*> LinearSpace for $Entries {
+            #[inline]
+            fn clear(&mut self) {
+                self.iter_mut().for_each(M::clear);
+            }
+            #[inline]
+            fn add(&mut self, a: M::Scalar, x: &Self) {
+                for (y, x) in self.iter_mut().zip(x) {
+                    y.add(a, x);
+                }
+            }
+            #[inline]
+            fn dot(&self, x: &Self) -> M::Scalar {
+                self.iter().zip(x).fold(M::Scalar::lit(0.0), |sum, (y, x)| sum + y.dot(x))
+            }
+            #[inline]
+            fn is_finite(&self) -> bool {
+                self.iter().all(M::is_finite)
+            }
         }
-    }
-    #[inline]
-    fn dot(&self, x: &Self) -> A::Scalar {
-        self.iter().zip(x).fold(A::Scalar::lit(0.0), |sum, (y, x)| sum + y.dot(x))
-    }
-    #[inline]
-    fn is_finite(&self) -> bool {
-        self.iter().all(A::is_finite)
-    }
+    )*};
+}
+entry_by_entry! {
+    [const N: usize] [M; N];
+    [] Box<[M]>;
 }
