@@ -10,7 +10,7 @@ use std::time::Instant;
 use lieflow::catalog::{MethodSpec, MethodsByName};
 use lieflow::maps::Exp;
 use lieflow::methods::tableau::{DOP853, DOPRI5};
-use lieflow::methods::{Embedded, Rk, Rkmk, Taylor};
+use lieflow::methods::{Embedded, Rk, Rkmk, Taylor, TaylorMomentum};
 use lieflow::problems::{Exact, RigidBody};
 use lieflow::{Event, Solve};
 use nalgebra::{Matrix3, Vector3};
@@ -55,6 +55,8 @@ fn main() {
     }
     job("taylor16", &Taylor::<16>, &exact);
     job("taylor12", &Taylor::<12>, &exact);
+    job("taylor16-m", &TaylorMomentum::<16>, &exact);
+    job("taylor12-m", &TaylorMomentum::<12>, &exact);
     job("rk dop853", &Rk(DOP853), &exact);
     job("rkmk dop853 exp", &Rkmk::new(DOP853, Exp), &exact);
     job("rk dopri5", &Rk(DOPRI5), &exact);

@@ -11,7 +11,7 @@ use crate::methods::{
     AnyMethod, Buss4, CfMagnus, CommutatorFree, Composition, ConjugationAction, ConjugationGroup,
     Embedded, EnergyCasimir, ExactMotion, GAUSS2, GAUSS4, GAUSS6, Gauss, IsospectralGauss,
     LieSeries, LowStorage, Method, Metric, OneBracket, ProjectionMethod, Rk, Rkmk, RkmkGauss,
-    RkmkGaussSymmetric, SeriesGroup, Taylor, Wide, magnus,
+    RkmkGaussSymmetric, SeriesGroup, Taylor, TaylorMomentum, Wide, magnus,
 };
 use crate::problems::{
     Ambient, FreeBody, LiePoisson, LinearField, Orthogonal, PointOf, Problem, ScalarOf, Split,
@@ -224,6 +224,21 @@ where
         Recipe::Series(14) => pair(Taylor::<14>),
         Recipe::Series(15) => pair(Taylor::<15>),
         Recipe::Series(16) => pair(Taylor::<16>),
+        _ => Ok(None),
+    }
+}
+
+/// Methods for the momentum of the free rigid body ([`Needs::Momentum`](super::Needs::Momentum)).
+///
+/// # Errors
+/// None.
+pub fn momenta<'p, P: FreeBody<Frame = ()> + 'p>(choice: &Choice<'_>) -> MaybeMethod<'p, P>
+where
+    ScalarOf<P>: Wide + Into<f64>,
+{
+    match choice.info.recipe {
+        Recipe::MomentumSeries(12) => pair(TaylorMomentum::<12>),
+        Recipe::MomentumSeries(16) => pair(TaylorMomentum::<16>),
         _ => Ok(None),
     }
 }

@@ -409,6 +409,8 @@ pub enum Needs {
     Series,
     /// The free rigid body in ℝ³ ([`FreeBody`](crate::problems::FreeBody), [`Split`](crate::problems::Split)).
     Body,
+    /// The momentum of the free rigid body in ℝ³, without its attitude ([`RigidBody`](crate::problems::RigidBody)).
+    Momentum,
     /// An orthogonal matrix in the state ([`Orthogonal`](crate::problems::Orthogonal)).
     Attitude,
     /// The momentum and the attitude as one state ([`RigidBodyState`](crate::problems::RigidBodyState)).
@@ -421,12 +423,13 @@ pub enum Needs {
 
 impl Needs {
     /// Every need, in the order of listings.
-    pub const ALL: [Needs; 9] = [
+    pub const ALL: [Needs; 10] = [
         Needs::Field,
         Needs::LinearType,
         Needs::Norm,
         Needs::Series,
         Needs::Body,
+        Needs::Momentum,
         Needs::Attitude,
         Needs::State,
         Needs::LiePoisson,
@@ -458,6 +461,7 @@ needs_in_words! {
     Norm = "a norm of the states",
     Series = "a field with Taylor coefficients",
     Body = "a free rigid body in three dimensions",
+    Momentum = "the momentum of a free rigid body in three dimensions, without its attitude",
     Attitude = "an attitude alone as its state",
     State = "a rigid body in three dimensions by its momentum and its attitude",
     LiePoisson = "a Lie–Poisson system, given by its momentum",

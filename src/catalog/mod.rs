@@ -32,7 +32,7 @@ mod problems;
 mod recipe;
 
 pub use build::{
-    bodies, classical, closed, energy_casimir, fields, implicit, isospectral, linear_type,
+    bodies, classical, closed, energy_casimir, fields, implicit, isospectral, linear_type, momenta,
     projected, series,
 };
 pub use facts::{

@@ -3,7 +3,7 @@
 use super::recipe::Recipe;
 use super::{
     Choice, MaybeMethod, MethodsByName, Needs, bodies, classical, closed, energy_casimir, fields,
-    first, implicit, isospectral, linear_type, projected, series,
+    first, implicit, isospectral, linear_type, momenta, projected, series,
 };
 use crate::actions::Action;
 use crate::maps::{Cay, CoordinateMap, Exp, ExpOrCay, MapsByName};
@@ -37,7 +37,8 @@ macro_rules! by_name {
 
 by_name! {
     [S: Trig + Wide + Into<f64>] RigidBody<S>,
-        Field Norm Series Body LiePoisson: closed fields implicit bodies energy_casimir;
+        Field Norm Series Body Momentum LiePoisson:
+        closed fields implicit bodies momenta energy_casimir;
     [S: Trig + Wide + Into<f64>] RigidBodyAttitude<S>,
         Field Norm Series Body Attitude: closed fields implicit bodies projected;
     [] RigidBodyQuaternion, Field Norm Series Body: fields implicit bodies;

@@ -46,6 +46,8 @@ pub(crate) enum Recipe {
     RkmkGaussSymmetric(GaussTableau),
     /// A Lie series of this order.
     Series(usize),
+    /// The Taylor series of this order of the momentum, on its sphere.
+    MomentumSeries(usize),
     Splitting(Splitting<3>),
     SimoWong(SimoWong),
     ComposedSimoWong(Scheme),

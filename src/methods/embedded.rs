@@ -5,6 +5,7 @@
 //! | [`Rkmk`](super::Rkmk) with a pair | ‖h Σ (b_j − b̂_j) k_j‖ in 𝔤 | ‖v‖ in 𝔤 |
 //! | commutator-free, low storage, Magnus 4(3), [`Rk`](super::Rk) | the distance of both results in M | the length of the step in M |
 //! | Lie series, [`Taylor`](super::Taylor) | the last terms of the series, as a number relative to the point | the same |
+//! | [`TaylorMomentum`](super::TaylorMomentum) | the last terms of the series, as a number relative to the point | the length of the step in M |
 //! | any other, by [`Doubling`](super::Doubling) | one step against two halves, in M | the same |
 //!
 //! An error e in 𝔤 is always relative to the point: λ_p(v + e) ≈ Λ(Ψ(e), λ_p(v)).
@@ -95,6 +96,22 @@ pub(super) fn ratio_of_relative<S: Real, M: Metric<Scalar = S>>(
     match tolerance.rule() {
         Rule::PerLength => ratio(e, tolerance.per_length(length)),
         Rule::PerStep => y.error_ratio(Gap::relative(e), &mut tolerance.scales()),
+    }
+}
+
+/// The ratio of the error of a step to the point `to`, given as a number relative to that point.
+#[inline]
+pub(super) fn ratio_of_relative_step<M: Metric>(
+    tolerance: &Tolerance,
+    e: M::Scalar,
+    from: &M,
+    to: &M,
+) -> M::Scalar {
+    match tolerance.rule() {
+        Rule::PerLength => ratio(e * to.size(), tolerance.per_length(to.distance(from))),
+        Rule::PerStep => {
+            to.error_ratio(Gap::relative(e).of_step_from(from), &mut tolerance.scales())
+        }
     }
 }
 

@@ -73,7 +73,7 @@ pub use simo_wong::SimoWong;
 pub use splitting::{MR2, MR4, Splitting};
 pub use streak::{Attempt, Attempts, Resize, Streak, Watch};
 pub use tableau::Tableau;
-pub use taylor::{Taylor, Wide};
+pub use taylor::{Taylor, TaylorMomentum, Wide};
 
 use crate::actions::Action;
 use crate::error::{Error, StepError};

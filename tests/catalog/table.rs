@@ -109,14 +109,15 @@ const INERTIA: [f64; 3] = [1.0, 2.0, 3.0];
 
 /// The free rigid body in ℝ³, in all its forms.
 fn bodies(sheet: &mut Sheet) {
-    use Needs::{Attitude, Body, Field, LiePoisson, Norm, Series, State};
+    use Needs::{Attitude, Body, Field, LiePoisson, Momentum, Norm, Series, State};
+    const ON_MOMENTA: &[Needs] = &[Field, Norm, Series, Body, Momentum, LiePoisson];
     const WITH_ATTITUDE: &[Needs] = &[Field, Norm, Series, Body, Attitude];
     let m = Vector3::new(0.9, 1.0, 2.1);
     let body = RigidBody::<f64>::new(INERTIA).expect("a body");
     row!(
         sheet,
         momentum,
-        Row::new("the momentum", &[Field, Norm, Series, Body, LiePoisson], body, m).with(&[
+        Row::new("the momentum", ON_MOMENTA, body, m).with(&[
             (Property::Energy, |body, m| body.energy(m)),
             (Property::Casimirs, |_, m| m.norm()),
             (Property::QuadraticInvariants, |_, m| m.norm_squared()),

@@ -1,7 +1,7 @@
 //! Lie series with adaptive steps: their rows and events on hard starts, beside the exact motion and another method.
 
 use lieflow::groups::Sample;
-use lieflow::methods::{Embedded, LieSeries, Rkmk, Taylor};
+use lieflow::methods::{Embedded, LieSeries, Rkmk, Taylor, TaylorMomentum};
 use lieflow::prelude::*;
 use lieflow::problems::{Exact, Problem, RigidBody, RigidBodyAttitude, RigidBodyN, TaylorField};
 use nalgebra::{Matrix3, Vector3};
@@ -46,6 +46,8 @@ fn rows_of_the_free_body() {
                 ("8", error_of_rows(&Taylor::<8>, start, end, rtol)),
                 ("11", error_of_rows(&Taylor::<11>, start, end, rtol)),
                 ("16", error_of_rows(&Taylor::<16>, start, end, rtol)),
+                ("8-m", error_of_rows(&TaylorMomentum::<8>, start, end, rtol)),
+                ("16-m", error_of_rows(&TaylorMomentum::<16>, start, end, rtol)),
             ];
             for (order, (error, steps)) in errors {
                 let allowed = growth * rtol + 1e-13 * growth;
@@ -55,8 +57,9 @@ fn rows_of_the_free_body() {
                 );
             }
             // A high order needs fewer steps.
-            let [low, high] = [errors[0].1.1, errors[2].1.1];
-            assert!(high < low, "{start:?} {rtol}: {low} and {high} steps");
+            for [low, high] in [[0, 2], [3, 4]].map(|pair| pair.map(|i: usize| errors[i].1.1)) {
+                assert!(high < low, "{start:?} {rtol}: {low} and {high} steps");
+            }
         }
         let [rough, fine] =
             [1e-6, 1e-9].map(|rtol| error_of_rows(&Taylor::<8>, start, end, rtol).0);
@@ -295,5 +298,37 @@ fn rows_of_a_series_cost_no_evaluation() {
             solve.run(start).unwrap().stats.evaluations
         };
         assert_eq!(evaluations(times(20.0)), evaluations(vec![20.0]));
+    }
+}
+
+/// The momentum in units of s, with the inertia in the same units, moves alike for any s: also where |m|² is beyond the range of
+/// numbers. Each row is on the sphere of the start.
+#[test]
+fn the_series_of_the_momentum_serves_any_unit() {
+    let rows = |s: f64| {
+        let body = RigidBody::<f64>::new(INERTIA.map(|j| s * j)).unwrap();
+        let solve = Solve::new(&body, &TaylorMomentum::<16>, [0.0, 20.0]).dt(0.5);
+        let run = solve.times(times(20.0)).run(s * V::new(0.1, 2.0, 0.3)).unwrap();
+        run.points.iter().map(|m| m / s).collect::<Vec<_>>()
+    };
+    let expected = rows(1.0);
+    let exact = Exact::new(INERTIA, [0.1, 2.0, 0.3], Matrix3::identity()).unwrap();
+    for s in [1.0, 1e-290, 1e-200, 1e-155, 1e-140, 1e140, 1e152, 1e200, 1e290] {
+        for ((m, expected), t) in rows(s).iter().zip(&expected).zip(times(20.0)) {
+            assert!((m - expected).norm() < 1e-13, "{s:e}: {m:?}, expected {expected:?}");
+            assert!((m.norm() - expected.norm()).abs() < 1e-14, "{s:e}: {m:?}");
+            assert!((m - exact.momentum_body(t).unwrap()).norm() < 1e-9, "{s:e}: {m:?}, t = {t}");
+        }
+    }
+}
+
+/// A body at rest stays at rest, and one that turns about an axis stays there.
+#[test]
+fn the_series_of_the_momentum_keeps_what_stays() {
+    let body = RigidBody::<f64>::new(INERTIA).unwrap();
+    for start in [V::zeros(), V::new(0.0, 2.0, 0.0), V::new(-3.0, 0.0, 0.0)] {
+        let solve = Solve::new(&body, &TaylorMomentum::<12>, [0.0, 100.0]).tolerances(1e-9, 1e-9);
+        let run = solve.times(times(100.0)).run(start).unwrap();
+        assert!(run.points.iter().all(|m| (m - start).norm() < 1e-14 * start.norm().max(1.0)));
     }
 }

@@ -309,7 +309,7 @@ fn attitudes_of_bodies() {
 #[test]
 fn momenta_of_bodies() {
     let steps = Steps::new(1.6, |i| (RigidBody::new(INERTIA).expect("a body"), momentum(i)));
-    let needs = [Needs::Series, Needs::Body, Needs::LiePoisson];
+    let needs = [Needs::Series, Needs::Body, Needs::Momentum, Needs::LiePoisson];
     every_method!(momentum, "momentum", needs, steps);
 }
 

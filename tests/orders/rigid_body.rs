@@ -103,7 +103,7 @@ macro_rules! suites {
 
 suites! {
     attitude: [Series, Body, Attitude];
-    momentum_alone: [Series, Body, LiePoisson];
+    momentum_alone: [Series, Body, Momentum, LiePoisson];
     both_in_one_state: [State];
     quadratic_systems: [Series, LiePoisson, Isospectral];
 }

@@ -7,7 +7,7 @@ use lieflow::Error;
 use lieflow::actions::Coadjoint;
 use lieflow::catalog::{
     self, MaybeMethod, MethodSpec, Needs, bodies, classical, energy_casimir, fields, first, fluids,
-    implicit, isospectral, linear_type, projected,
+    implicit, isospectral, linear_type, momenta, projected,
 };
 use lieflow::groups::MatrixGroup;
 use lieflow::maps::{Cay, CoordinateMap, Exp, ExpOrCay, MapsByName};
@@ -106,7 +106,7 @@ by_name! {
          ScalarOf<P>: Trig + Wide + Into<f64>, Exp: CoordinateMap<P::Group>,
          ExpOrCay: CoordinateMap<P::Group>];
     /// Methods for the momentum of the free rigid body.
-    momentum: Field Norm Series Body LiePoisson: [fields, implicit, bodies, energy_casimir], P, [P: FreeBody + Split + LiePoisson],
+    momentum: Field Norm Series Body Momentum LiePoisson: [fields, implicit, bodies, momenta, energy_casimir], P, [P: FreeBody<Frame = ()> + Split + LiePoisson],
         [P::Group: MapsByName,
          ScalarOf<P>: Trig + Wide + Into<f64>, Exp: CoordinateMap<P::Group>,
          ExpOrCay: CoordinateMap<P::Group>];

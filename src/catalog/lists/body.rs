@@ -238,6 +238,29 @@ taylor! {
     "taylor16" 16,
 }
 
+const fn taylor_momentum(
+    name: &'static str,
+    work: &'static [WorkItem],
+    order: usize,
+) -> MethodInfo {
+    const SOURCE: &str = "Jorba & Zou 2005; Hairer, Lubich, Wanner IV.4";
+    let summary = "Taylor series of the momentum, brought back to its sphere";
+    let (family, cost) = ((Family::Projection, Needs::Momentum), Cost::of(work));
+    let recipe = Recipe::MomentumSeries(order);
+    plain(family, name, order, summary, &[Casimirs], cost, SOURCE, recipe)
+}
+
+/// 3 p (p + 1)/2 multiplications.
+const fn momentum_work(p: u32) -> [WorkItem; 1] {
+    [times(3 * p * (p + 1) / 2, Multiplication)]
+}
+
+/// For the momentum of the free rigid body in ℝ³.
+pub(super) const MOMENTUM: &[MethodInfo] = &[
+    taylor_momentum("taylor12-m", &const { momentum_work(12) }, 12),
+    taylor_momentum("taylor16-m", &const { momentum_work(16) }, 16),
+];
+
 const fn projected(
     name: &'static str,
     summary: &'static str,

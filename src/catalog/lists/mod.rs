@@ -30,6 +30,7 @@ impl Needs {
             Needs::Norm => NORM,
             Needs::Series => body::SERIES,
             Needs::Body => body::BODY,
+            Needs::Momentum => body::MOMENTUM,
             Needs::Attitude => body::ATTITUDE,
             Needs::State => body::STATE,
             Needs::LiePoisson => LIE_POISSON,

@@ -13,17 +13,19 @@
 //! The last two coefficients give the step size: θ = min((tol/|q_{N−1}|)^{1/(N−1)}, (tol/|q_N|)^{1/N}).
 //! [`Taylor::advance`] takes the largest step within the tolerance. It computes the step size from coefficients that it
 //! needs in any case, so no step is rejected. The method is also [`Embedded`], for adaptive runs. Its series at θh is the
-//! dense output, of order N at all θ. For other groups and
-//! fields see [`LieSeries`](super::LieSeries). Source: W. Gröbner, Die Lie-Reihen und ihre Anwendungen (1960); À. Jorba
+//! dense output, of order N at all θ. For bodies without an attitude see [`TaylorMomentum`], for other groups and fields
+//! [`LieSeries`](super::LieSeries). Source: W. Gröbner, Die Lie-Reihen und ihre Anwendungen (1960); À. Jorba
 //! & M. Zou, Experiment. Math. 14 (2005), for the step.
 
 mod lanes;
+mod momentum;
 mod series;
 
 use nalgebra::Vector3;
 
 pub use lanes::Wide;
-use series::{Advance, At, Body, OneStep, error, reach, rotation, square_of};
+pub use momentum::TaylorMomentum;
+use series::{Advance, Body, OneStep, Quaternion, Terms, error, reach, rotation, square_of};
 
 use super::embedded::ratio_of_relative;
 use super::simo_wong::turn_by;
@@ -32,7 +34,6 @@ use crate::error::{Error, StepError};
 use crate::groups::{LieAlgebra, So3};
 use crate::problems::{Frame, FreeBody, PointOf, ScalarOf};
 use crate::scalar::Real;
-use crate::space::{Metric, Numbers};
 use crate::tolerance::Tolerance;
 
 /// The Taylor method of order N, 4 ≤ N ≤ 16. Another N does not compile.
@@ -65,7 +66,7 @@ impl<const N: usize> Taylor<N> {
     {
         let (body, m) = (Body::new(problem.inverse_inertia()), problem.load(y).0);
         let mut terms = [[0.0; 4]; N];
-        f64::dispatch(OneStep { body: &body, h, m, terms: &mut terms });
+        f64::dispatch(OneStep { of: Quaternion, body: &body, h, m, terms: &mut terms });
         h * reach::<N>([terms[N - 2], terms[N - 1]].map(square_of), tolerance)
     }
 
@@ -111,20 +112,7 @@ impl<const N: usize> Taylor<N> {
 
 /// The terms of a step, for the points within it.
 #[derive(Clone, Debug)]
-pub struct TaylorWork<S, const N: usize> {
-    terms: [[S; 4]; N],
-    /// The size of that step, and the momentum at its start.
-    of: Option<(S, Vector3<S>)>,
-}
-
-impl<S: Wide, const N: usize> TaylorWork<S, N> {
-    /// The quaternion of a step of size h from the momentum m. The terms are then those of this step.
-    #[inline(always)]
-    fn step(&mut self, j: &Vector3<S>, h: S, m: Vector3<S>) -> [S; 4] {
-        self.of = Some((h, m));
-        S::dispatch(OneStep { body: &Body::new(j), h, m, terms: &mut self.terms })
-    }
-}
+pub struct TaylorWork<S, const N: usize>(Terms<S, Quaternion, N>);
 
 impl<P: FreeBody, const N: usize> Method<P> for Taylor<N>
 where
@@ -139,7 +127,7 @@ where
             .dense(N, 0)
     }
     fn work(&self, _: &P, _: &PointOf<P>) -> Result<Self::Work, Error> {
-        Ok(TaylorWork { terms: [[Real::lit(0.0); 4]; N], of: None })
+        Ok(TaylorWork(Terms::new(Quaternion)))
     }
     #[inline]
     fn step(
@@ -150,7 +138,7 @@ where
         work: &mut Self::Work,
     ) -> Result<(), StepError> {
         let (m, mut frame) = problem.load(y);
-        let q = work.step(problem.inverse_inertia(), h, m);
+        let q = work.0.step(problem.inverse_inertia(), h, m);
         turn_by(problem, &rotation(q), m, &mut frame, y)
     }
     /// The last step has its terms. Those of another one are computed.
@@ -163,9 +151,8 @@ where
         work: &mut Self::Work,
     ) -> Result<(), StepError> {
         let m = problem.load(from).0;
-        let is_known = work.of.is_some_and(|(of, from)| of == h && from.is_same(&m));
-        if !is_known {
-            work.step(problem.inverse_inertia(), h, m);
+        if !work.0.is_of(h, &m) {
+            work.0.step(problem.inverse_inertia(), h, m);
         }
         Ok(())
     }
@@ -180,15 +167,14 @@ where
         y: &mut PointOf<P>,
     ) -> Result<(), StepError> {
         let (m, mut frame) = problem.load(from);
-        let q = Wide::dispatch(At { terms: &work.terms, theta: Real::lit(theta) });
+        let q = work.0.at(&m, Real::lit(theta));
         turn_by(problem, &rotation(q), m, &mut frame, y)
     }
     fn within(&self, _: &Self::Work) -> Within {
         Within::Series
     }
     fn each_term(&self, work: &mut Self::Work, each: &mut dyn FnMut(&mut f64)) {
-        work.of = None;
-        work.terms.iter_mut().flatten().for_each(|x| x.each_number(each));
+        work.0.each_term(each);
     }
 }
 
@@ -208,10 +194,10 @@ where
     ) -> Result<ScalarOf<P>, StepError> {
         let (m, mut frame) = problem.load(from);
         let j = problem.inverse_inertia();
-        let q = work.step(j, h, m);
+        let q = work.0.step(j, h, m);
         turn_by(problem, &rotation(q), m, &mut frame, to)?;
         // The angle is twice that of the quaternion.
-        let error = 2.0 * error(&work.terms);
+        let error = 2.0 * error(&work.0.terms, 1.0);
         let omega = Vector3::new(j[0] * m[0], j[1] * m[1], j[2] * m[2]);
         let length = h.abs() * So3::new().norm(&omega);
         Ok(ratio_of_relative(tolerance, Real::lit(error), from, length))

@@ -1,10 +1,11 @@
-//! The Taylor coefficients of the rotation of a free body, and the steps from them.
+//! The Taylor coefficients of a free body, of its momentum and of its rotation, and the steps from them.
 
 use nalgebra::{Matrix3, Vector3};
 
 use super::lanes::{INVERSE, Kernel, Lanes, Wide};
 use crate::error::StepError;
 use crate::scalar::Real;
+use crate::space::Metric;
 
 /// The constants of a body in the recurrences.
 #[derive(Clone, Copy)]
@@ -13,6 +14,71 @@ pub(super) struct Body<S> {
     rate: [S; 4],
     /// ω/2 = half·m.
     half: [S; 4],
+}
+
+/// What a Taylor series is of: four numbers that follow from the momentum at the start.
+pub(super) trait Unknown<S: Wide>: Copy {
+    /// The recurrence of its coefficients.
+    type Terms<L: Lanes<S>, const N: usize>: Recurrence<S, L>;
+
+    /// The value at the start.
+    fn start(self, m: &Vector3<S>) -> [S; 4];
+}
+
+/// The quaternion of the rotation of the body frame, from 𝟙.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Quaternion;
+
+impl<S: Wide> Unknown<S> for Quaternion {
+    type Terms<L: Lanes<S>, const N: usize> = Turns<S, L, N>;
+
+    #[inline(always)]
+    fn start(self, _: &Vector3<S>) -> [S; 4] {
+        unit()
+    }
+}
+
+/// The momentum in the body.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Momentum;
+
+impl<S: Wide> Unknown<S> for Momentum {
+    type Terms<L: Lanes<S>, const N: usize> = Momenta<S, L, N>;
+
+    #[inline(always)]
+    fn start(self, m: &Vector3<S>) -> [S; 4] {
+        [m[0], m[1], m[2], S::lit(0.0)]
+    }
+}
+
+/// A recurrence of Taylor coefficients.
+pub(super) trait Recurrence<S, L: Lanes<S>> {
+    /// The coefficients for steps of size h from the momentum m.
+    fn new(l: L, body: &Body<S>, h: S, m: L::V) -> Self;
+    /// The coefficient of hᵏ⁺¹, times that, from all up to k.
+    fn next(&mut self, k: usize) -> L::V;
+}
+
+/// The coefficients c₁ h, …, c_N hᴺ.
+#[inline(always)]
+fn terms<S: Wide, L: Lanes<S>, U: Unknown<S>, const N: usize>(
+    (l, _): (L, U),
+    body: &Body<S>,
+    h: S,
+    m: L::V,
+) -> [L::V; N] {
+    const { assert!(4 <= N && N <= INVERSE.len(), "4 ≤ order ≤ 16") };
+    let mut out = [l.splat(S::lit(0.0)); N];
+    let mut to_k = U::Terms::<L, N>::new(l, body, h, m);
+    // In a loop the sums of products, whose number changes from one k to the next, take a fifth more time.
+    macro_rules! each {
+        ($($k:literal)*) => {{$(if $k < N { out[$k] = to_k.next($k); })*}};
+    }
+    match L::IS_UNROLLED {
+        true => each!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15),
+        false => (0..N).for_each(|k| out[k] = to_k.next(k)),
+    }
+    out
 }
 
 /// 𝟙 as a quaternion.
@@ -31,27 +97,67 @@ impl<S: Wide> Body<S> {
             half: [half * j[0], half * j[1], half * j[2], zero],
         }
     }
+}
 
-    /// The coefficients q₁ h, …, q_N hᴺ of the quaternion.
+/// m_{k+1} hᵏ⁺¹ = rate·Σ_j (m_j)_yzx (m_{k−j})_zxy, `rate` with the factor h/(k+1). `m` are the factors of m_k, `first` those of
+/// m_0, and `older` is the sum for 0 < j < k.
+#[inline(always)]
+fn next_momentum<S, L: Lanes<S>>(
+    l: L,
+    k: usize,
+    rate: L::V,
+    [m_yzx, m_zxy]: [L::V; 2],
+    first: [L::V; 2],
+    older: L::V,
+) -> L::V {
+    let next = l.mul_add(m_yzx, l.mul(rate, first[1]), l.mul(rate, older));
+    if k > 0 { l.mul_add(m_zxy, l.mul(rate, first[0]), next) } else { next }
+}
+
+/// The coefficients m_k hᵏ, and the factors of the products of all before.
+pub(super) struct Momenta<S, L: Lanes<S>, const N: usize> {
+    l: L,
+    rate: L::V,
+    h: L::V,
+    /// (y, z, x) and (z, x, y) of m_0.
+    first: [L::V; 2],
+    m: L::V,
+    /// (y, z, x) of m.
+    left: [L::V; N],
+    /// (z, x, y) of m.
+    right: [L::V; N],
+}
+
+impl<S: Wide, L: Lanes<S>, const N: usize> Recurrence<S, L> for Momenta<S, L, N> {
     #[inline(always)]
-    fn terms<L: Lanes<S>, const N: usize>(&self, l: L, h: S, m: L::V) -> [L::V; N] {
-        const { assert!(4 <= N && N <= INVERSE.len(), "4 ≤ order ≤ 16") };
-        let mut out = [l.splat(S::lit(0.0)); N];
-        let mut to_k = Recurrence::<S, L, N>::new(l, self, h, m);
-        // In a loop the sums of products, whose number changes from one k to the next, take a fifth more time.
-        macro_rules! each {
-            ($($k:literal)*) => {{$(if $k < N { out[$k] = to_k.next($k); })*}};
+    fn new(l: L, body: &Body<S>, h: S, m: L::V) -> Self {
+        let none = [l.splat(S::lit(0.0)); N];
+        let (rate, first) = (l.load(body.rate), l.cycled(m));
+        Momenta { l, rate, h: l.splat(h), first, m, left: none, right: none }
+    }
+
+    /// m_{k+1} hᵏ⁺¹.
+    #[inline(always)]
+    fn next(&mut self, k: usize) -> L::V {
+        let Momenta { l, rate, h, first, m, ref mut left, ref mut right } = *self;
+        let factors = l.cycled(m);
+        [left[k], right[k]] = factors;
+        // As in `Turns`.
+        let mut sums = [l.splat(S::lit(0.0)); 2];
+        for j in k.div_ceil(2)..k {
+            sums[0] = l.mul_add(left[j], right[k - j], sums[0]);
+            if j != k - j {
+                sums[1] = l.mul_add(left[k - j], right[j], sums[1]);
+            }
         }
-        match L::IS_UNROLLED {
-            true => each!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15),
-            false => (0..N).for_each(|k| out[k] = to_k.next(k)),
-        }
-        out
+        let rate = l.mul(l.mul(h, l.splat(S::inverse(k))), rate);
+        self.m = next_momentum(l, k, rate, factors, first, l.add(sums[0], sums[1]));
+        self.m
     }
 }
 
 /// The coefficients m_k hᵏ and q_k hᵏ, and the factors of the products of all before.
-struct Recurrence<S, L: Lanes<S>, const N: usize> {
+pub(super) struct Turns<S, L: Lanes<S>, const N: usize> {
     l: L,
     rate: L::V,
     half: L::V,
@@ -68,21 +174,20 @@ struct Recurrence<S, L: Lanes<S>, const N: usize> {
     right: [[L::W; 2]; N],
 }
 
-impl<S: Wide, L: Lanes<S>, const N: usize> Recurrence<S, L, N> {
+impl<S: Wide, L: Lanes<S>, const N: usize> Recurrence<S, L> for Turns<S, L, N> {
     #[inline(always)]
     fn new(l: L, body: &Body<S>, h: S, m: L::V) -> Self {
         let (rate, half) = (l.load(body.rate), l.load(body.half));
         let (first, omega) = (l.cycled(m), l.spread(l.mul(half, m)));
         let q = l.splat(S::lit(0.0));
         let none = [[l.pair([q; 2]); 2]; N];
-        Recurrence { l, rate, half, h: l.splat(h), first, omega, m, q, left: none, right: none }
+        Turns { l, rate, half, h: l.splat(h), first, omega, m, q, left: none, right: none }
     }
 
-    /// q_{k+1} hᵏ⁺¹, from all up to k.
+    /// q_{k+1} hᵏ⁺¹.
     #[inline(always)]
     fn next(&mut self, k: usize) -> L::V {
-        let Recurrence { l, rate, half, h, first, omega, m, q, ref mut left, ref mut right } =
-            *self;
+        let Turns { l, rate, half, h, first, omega, m, q, ref mut left, ref mut right } = *self;
         let w = l.mul(half, m);
         let [m_yzx, m_zxy] = l.cycled(m);
         let [w_x, w_y, w_z] = l.spread(w);
@@ -107,11 +212,7 @@ impl<S: Wide, L: Lanes<S>, const N: usize> Recurrence<S, L, N> {
         let of_m = l.add(of_m, of_m_2);
 
         let scale = l.mul(h, l.splat(S::inverse(k)));
-        let rate = l.mul(scale, rate);
-        self.m = l.mul_add(m_yzx, l.mul(rate, first[1]), l.mul(rate, of_m));
-        if k > 0 {
-            self.m = l.mul_add(m_zxy, l.mul(rate, first[0]), self.m);
-        }
+        self.m = next_momentum(l, k, l.mul(scale, rate), [m_yzx, m_zxy], first, of_m);
         // No `map`: in a build of many units without LTO it leaves the lanes.
         let omega = [l.mul(scale, omega[0]), l.mul(scale, omega[1]), l.mul(scale, omega[2])];
         self.q = l.add(
@@ -128,34 +229,36 @@ fn square<S: Real, L: Lanes<S>>(l: L, v: L::V) -> S {
     square_of(l.store(v))
 }
 
-/// A step: the quaternion at h, not yet of length 1. `terms` ← the coefficients of θ, …, θᴺ of the quaternion at θh.
-pub(super) struct OneStep<'a, S, const N: usize> {
+/// A step: the unknown at h, not yet of its length. `terms` ← the coefficients of θ, …, θᴺ of the unknown at θh.
+pub(super) struct OneStep<'a, S, U, const N: usize> {
+    pub(super) of: U,
     pub(super) body: &'a Body<S>,
     pub(super) h: S,
     pub(super) m: Vector3<S>,
     pub(super) terms: &'a mut [[S; 4]; N],
 }
 
-impl<S: Wide, const N: usize> Kernel<S> for OneStep<'_, S, N> {
+impl<S: Wide, U: Unknown<S>, const N: usize> Kernel<S> for OneStep<'_, S, U, N> {
     type Out = [S; 4];
 
     #[inline(always)]
     fn run<L: Lanes<S>>(self, l: L) -> [S; 4] {
-        let OneStep { body, h, m, terms } = self;
-        let m = l.load([m[0], m[1], m[2], S::lit(0.0)]);
-        let found = body.terms::<L, N>(l, h, m);
+        let OneStep { of, body, h, m, terms } = self;
+        let found: [L::V; N] = self::terms((l, of), body, h, l.load(Momentum.start(&m)));
         // As `At` has it for θ = 1.
         let mut sums = [l.splat(S::lit(0.0)); 2];
         for k in (0..N).rev() {
             terms[k] = l.store(found[k]);
             sums[k % 2] = l.add(sums[k % 2], found[k]);
         }
-        l.store(l.add(l.add(sums[0], sums[1]), l.load(unit())))
+        l.store(l.add(l.add(sums[0], sums[1]), l.load(of.start(&m))))
     }
 }
 
-/// The quaternion at θh, not of length 1: odd and even powers each by Horner's rule.
+/// The unknown at θh, not of its length: odd and even powers each by Horner's rule.
 pub(super) struct At<'a, S, const N: usize> {
+    /// The unknown at 0.
+    pub(super) start: [S; 4],
     pub(super) terms: &'a [[S; 4]; N],
     pub(super) theta: S,
 }
@@ -165,24 +268,24 @@ impl<S: Wide, const N: usize> Kernel<S> for At<'_, S, N> {
 
     #[inline(always)]
     fn run<L: Lanes<S>>(self, l: L) -> [S; 4] {
-        let At { terms, theta } = self;
+        let At { start, terms, theta } = self;
         let (theta, square) = (l.splat(theta), l.splat(theta * theta));
         let mut sums = [l.splat(S::lit(0.0)); 2];
         for k in (0..N).rev() {
             sums[k % 2] = l.mul_add(sums[k % 2], square, l.load(terms[k]));
         }
         let [odd, even] = sums;
-        l.store(l.mul_add(l.mul_add(even, theta, odd), theta, l.load(unit())))
+        l.store(l.mul_add(l.mul_add(even, theta, odd), theta, l.load(start)))
     }
 }
 
-/// The error of a step: the last term, or the one before to the power N/(N − 1), because one of both may vanish where the
-/// motion is even or odd.
+/// The error of a step of an unknown of this size: the last term, or the one before to the power N/(N − 1), because one of
+/// both may vanish where the motion is even or odd.
 #[inline(always)]
-pub(super) fn error<S: Real + Into<f64>, const N: usize>(terms: &[[S; 4]; N]) -> f64 {
+pub(super) fn error<S: Real + Into<f64>, const N: usize>(terms: &[[S; 4]; N], size: f64) -> f64 {
     let (before, last): (f64, f64) =
         (square_of(terms[N - 2]).into(), square_of(terms[N - 1]).into());
-    let root = coarse_root(before, 1.0, 2 * (N - 1));
+    let root = coarse_root(before, size * size, 2 * (N - 1));
     last.sqrt().max(before.sqrt() * root)
 }
 
@@ -272,7 +375,7 @@ impl<const N: usize> Kernel<f64> for Advance<'_, N> {
         let (mut steps, mut tries, mut failed) = (0, 0, None);
         while passed != span {
             let left = span - passed;
-            let terms = body.terms::<L, N>(l, guess, m);
+            let terms: [L::V; N] = self::terms((l, Quaternion), body, guess, m);
             let theta = reach::<N>([square(l, terms[N - 2]), square(l, terms[N - 1])], tolerance);
             // A guess that is far off is made again, nearer: the terms are not to overflow.
             if !(1.0 / GROWTH..).contains(&theta) && tries < TRIES {
@@ -336,4 +439,43 @@ fn turn_back<L: Lanes<f64>>(l: L, q: L::V, length: f64, m: L::V) -> L::V {
     let minus_w = l.splat(-l.store(q)[3]);
     let turn = l.mul_add(minus_w, vm, cross(q, vm));
     l.mul_add(l.splat(2.0 / length), turn, m)
+}
+
+/// The terms of the last step, for the points within it.
+#[derive(Clone, Debug)]
+pub(super) struct Terms<S, U, const N: usize> {
+    unknown: U,
+    pub(super) terms: [[S; 4]; N],
+    /// The size of that step, and the momentum at its start.
+    pub(super) of: Option<(S, Vector3<S>)>,
+}
+
+impl<S: Wide, U: Unknown<S>, const N: usize> Terms<S, U, N> {
+    pub(super) fn new(unknown: U) -> Self {
+        Terms { unknown, terms: [[S::lit(0.0); 4]; N], of: None }
+    }
+
+    /// The sum of the series of a step of size h from the momentum m. The terms are then those of this step.
+    #[inline(always)]
+    pub(super) fn step(&mut self, j: &Vector3<S>, h: S, m: Vector3<S>) -> [S; 4] {
+        self.of = Some((h, m));
+        let (of, body) = (self.unknown, &Body::new(j));
+        S::dispatch(OneStep { of, body, h, m, terms: &mut self.terms })
+    }
+
+    /// True if the terms are those of this step.
+    pub(super) fn is_of(&self, h: S, m: &Vector3<S>) -> bool {
+        self.of.is_some_and(|(of, from)| of == h && from.is_same(m))
+    }
+
+    /// The sum of the series at θh, for a step from the momentum m.
+    #[inline(always)]
+    pub(super) fn at(&self, m: &Vector3<S>, theta: S) -> [S; 4] {
+        S::dispatch(At { start: self.unknown.start(m), terms: &self.terms, theta })
+    }
+
+    pub(super) fn each_term(&mut self, each: &mut dyn FnMut(&mut f64)) {
+        self.of = None;
+        self.terms.iter_mut().flatten().for_each(|x| x.each_number(each));
+    }
 }

@@ -5,6 +5,7 @@ use lieflow::groups::{LieGroup, So3};
 use lieflow::methods::tableau::DOP853;
 use lieflow::methods::{
     DMV8, DMV10, KAHAN_LI8, ProjectionMethod, Rk, SOFRONIOU_SPALETTA10, Splitting, Taylor,
+    TaylorMomentum,
 };
 use lieflow::problems::{Projection, RigidBody, RigidBodyAttitude, RigidBodyState};
 use lieflow::scalar::Real;
@@ -64,8 +65,12 @@ bodies! {
             "rk-qr" => &body, STORED, ProjectionMethod::new(Rk(DOP853), Projection::Qr);
             "rk-polar" => &body, STORED, ProjectionMethod::new(Rk(DOP853), Projection::Polar);
         };
-    momenta: "a body by its momentum", [Needs::Series, Needs::Body, Needs::LiePoisson],
-        |j| move |i| (RigidBody::new(j).unwrap(), Vector3::from(momentum(i)).map(D::lit)), {};
+    momenta: "a body by its momentum",
+        [Needs::Series, Needs::Body, Needs::Momentum, Needs::LiePoisson],
+        |j| move |i| (RigidBody::new(j).unwrap(), Vector3::from(momentum(i)).map(D::lit)), {
+            "taylor12-m" => &body, rational(12), TaylorMomentum::<12>;
+            "taylor16-m" => &body, rational(16), TaylorMomentum::<16>;
+        };
     states: "a body by both in one state", [Needs::State],
         |j| move |i| {
             let body = RigidBodyState::new(j).unwrap();

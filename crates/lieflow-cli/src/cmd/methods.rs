@@ -174,6 +174,7 @@ const ADVICE: &[Advice] = &[
         want: "small errors",
         because: "a high order needs few steps",
         take: &[
+            take("taylor16-m", "free bodies by their momentum alone"),
             take("taylor16", "free bodies, tops, pendulums"),
             Take {
                 method: "magnus8",
@@ -189,6 +190,7 @@ const ADVICE: &[Advice] = &[
         want: "rough answers, soon",
         because: "it takes little time to errors of 1e-2 to 1e-4",
         take: &[
+            take("taylor12-m", "free bodies by their momentum alone"),
             take("taylor12", "free bodies, tops, pendulums"),
             take("cfm4-2", "y' = A(t) y"),
             on_matrices("rkmk dopri5 cay"),
@@ -288,8 +290,8 @@ fn advice(wanted: Wanted<'_>, typed: &str) -> Result<String, CliError> {
     let high = if wanted.fits(model.as_ref(), &"dmv10".parse()?) { ", such as dmv10" } else { "" };
     let more = format!(
         "`lieflow compare {typed} --error 1e-8{keep}` measures which method is the fastest. Only pairs (methods with a \
-         tableau such as dop853, and cf43, cf-ls32, magnus43), taylorN and exact estimate their error. With rtol all \
-         other methods take each step once whole and once in two halves. Then compositions, DMV, Gauss methods and \
+         tableau such as dop853, and cf43, cf-ls32, magnus43), taylorN, taylorN-m and exact estimate their error. With \
+         rtol all other methods take each step once whole and once in two halves. Then compositions, DMV, Gauss methods and \
          energy-casimir lose what makes them good over long times: give them dt, or take one of high order{high}. No \
          method here is made for stiff problems: the implicit ones need short steps there too."
     );
