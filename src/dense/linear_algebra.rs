@@ -26,7 +26,9 @@ pub fn squared_norm(x: MatRef<'_, f64>) -> f64 {
 
 /// max |x_ij|; NaN if an entry is NaN.
 pub fn largest_entry(x: MatRef<'_, f64>) -> f64 {
-    x.norm_max()
+    // faer's largest entry is that of the others where one is NaN.
+    let has_nan = x.col_iter().any(|column| column.iter().any(|x| x.is_nan()));
+    if has_nan { f64::NAN } else { x.norm_max() }
 }
 
 /// det a of a square matrix. Cost: O(n³).
@@ -88,6 +90,20 @@ pub fn hermitian_eigenvalues(a: MatRef<'_, c64>) -> Result<Vec<f64>, StepError> 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_largest_entry_is_nan_where_one_is() {
+        let finite = Mat::from_fn(7, 5, |i, j| (i as f64 - 2.0 * j as f64).sin());
+        for (i, j) in (0..7).flat_map(|i| (0..5).map(move |j| (i, j))) {
+            let mut x = finite.clone();
+            x[(i, j)] = -3.0;
+            assert_eq!(largest_entry(x.as_ref()), 3.0);
+            assert_eq!(largest_entry(x.transpose()), 3.0);
+            x[(6 - i, 4 - j)] = f64::NAN;
+            assert!(largest_entry(x.as_ref()).is_nan(), "{i}, {j}");
+            assert!(largest_entry(x.transpose()).is_nan(), "{i}, {j}");
+        }
+    }
 
     #[test]
     fn decompositions_give_back_their_matrix() -> Result<(), StepError> {

@@ -3,6 +3,7 @@
 
 use core::f64::consts::{PI, TAU};
 
+use lieflow::dense::largest_entry;
 use lieflow::floquet::{Stability, monodromy};
 use lieflow::groups::AlgebraMatrix;
 use lieflow::methods::magnus::Magnus6;
@@ -102,8 +103,8 @@ impl Hill {
             Some(in_velocity_units(&g, unit))
         };
         let (coarse, fine) = (by(steps / 2)?, by(steps)?);
-        let of_steps = OF_HALF * (&fine - &coarse).norm_max();
-        let size = fine.norm_max();
+        let of_steps = OF_HALF * largest_entry((&fine - &coarse).as_ref());
+        let size = largest_entry(fine.as_ref());
         let error = of_steps.max(explained_by_rounding(steps, size));
         (error < UNKNOWN * size).then_some((fine, error))
     }
