@@ -133,6 +133,106 @@ fn multipliers_that_meet() {
     assert!(Stability::of(&mat![[f64::NAN, 0.0], [0.0, 1.0]], 0.0).is_err());
 }
 
+/// M of these 2×2 blocks on (x₁, …, x_m, ẋ₁, …, ẋ_m), in a basis that mixes them.
+fn of_blocks(blocks: &[[[f64; 2]; 2]]) -> Mat<f64> {
+    let m = blocks.len();
+    let plain = Mat::from_fn(2 * m, 2 * m, |i, j| match i % m == j % m {
+        true => blocks[i % m][i / m][j / m],
+        false => 0.0,
+    });
+    // A reflection in a vector that has no zeros: orthogonal and symmetric.
+    let v = |i: usize| (1.0 + i as f64).sin();
+    let square: f64 = (0..2 * m).map(|i| v(i) * v(i)).sum();
+    let turn =
+        Mat::from_fn(2 * m, 2 * m, |i, j| f64::from(u8::from(i == j)) - 2.0 * v(i) * v(j) / square);
+    &turn * plain * &turn
+}
+
+/// 1, 2 and 5 in each of these decades.
+fn in_decades(decades: core::ops::Range<i32>) -> impl Iterator<Item = f64> {
+    decades.flat_map(|k| [1.0, 2.0, 5.0].map(|x| x * 10f64.powi(k)))
+}
+
+/// Growth by any known rate g beside oscillators and a free mass. Closed formulas: the multipliers e^{±g} of ẍ = g²x, and
+/// of its canonical form.
+#[test]
+fn slow_growth_beside_other_motions() {
+    let oscillator = |w: f64| [[w.cos(), w.sin()], [-w.sin(), w.cos()]];
+    let free = [[1.0, 0.3], [0.0, 1.0]];
+    let normal = |g: f64| [[g.cosh(), g.sinh()], [g.sinh(), g.cosh()]];
+    let shear = |g: f64| [[g.cosh(), g.sinh() / g], [g * g.sinh(), g.cosh()]];
+    let see = |g: f64, error: f64, blocks: &[[[f64; 2]; 2]]| {
+        let found = Stability::of(&of_blocks(blocks), error).unwrap();
+        let right = (found.growth / g - 1.0).abs() < 1e-2 && !found.is_bounded;
+        assert!(right, "g = {g:e}, error = {error:e}, {blocks:?}: {found:?}");
+    };
+    for w in [1.3, 0.927, 3.0] {
+        for g in in_decades(-9..-2) {
+            for error in [1e-8, 1e-10, 1e-12, 1e-2 * g].into_iter().filter(|e| 20.0 * e < g) {
+                see(g, error, &[normal(g), oscillator(w)]);
+                see(g, error, &[oscillator(w), normal(g), oscillator(0.4 * w)]);
+                see(g, error, &[normal(g), oscillator(w), normal(g)]);
+            }
+        }
+        for g in in_decades(-6..-2) {
+            for error in [1e-8, 1e-10, 1e-12, 1e-14].into_iter().filter(|e| 20.0 * e < g * g) {
+                see(g, error, &[normal(g), free]);
+                see(g, error, &[shear(g), oscillator(w)]);
+                see(g, error, &[oscillator(w), shear(g), oscillator(0.4 * w)]);
+                see(g, error, &[shear(g), oscillator(w), shear(g)]);
+            }
+        }
+    }
+    // Growth that overflows in a few periods.
+    let fast = [[1e200, 0.0], [0.0, 1e-200]];
+    let found = Stability::of(&of_blocks(&[fast, oscillator(1.3)]), 1e-13).unwrap();
+    assert!((found.growth / 1e200f64.ln() - 1.0).abs() < 1e-12 && !found.is_bounded, "{found:?}");
+}
+
+/// Beside oscillators and free masses an M that is known to `error` shows no growth that is `error` alone.
+#[test]
+fn an_error_of_the_monodromy_is_no_growth() {
+    let oscillator = |w: f64| [[w.cos(), w.sin()], [-w.sin(), w.cos()]];
+    let free = |shear: f64| [[1.0, shear], [0.0, 1.0]];
+    for error in [1e-6, 1e-8, 1e-10, 1e-13] {
+        for (blocks, is_bounded) in [
+            ([oscillator(1.3), oscillator(0.4)], true),
+            ([oscillator(1.3), oscillator(1.3)], true),
+            ([free(1.0), oscillator(0.9)], false),
+            ([free(0.3), free(2.0)], false),
+        ] {
+            let exact = of_blocks(&blocks);
+            for seed in 0..20 {
+                let part = |i: usize, j: usize| (1.0 + (7 * i + 3 * j + 11 * seed) as f64).sin();
+                let m = Mat::from_fn(4, 4, |i, j| exact[(i, j)] + error * part(i, j));
+                let found = Stability::of(&m, error).unwrap();
+                let expected = Stability { growth: 0.0, is_bounded };
+                assert_eq!(found, expected, "error = {error:e}, {blocks:?}, {seed}");
+            }
+        }
+    }
+}
+
+/// Two oscillators with ω = 1, √2.56 and a coupling 2K cos 2.6t grow by K/(2√1.6) to first order in K, the rate of a
+/// combination resonance.
+#[test]
+fn weak_combination_resonances() {
+    let period = 2.0 * PI / 2.6;
+    for k in in_decades(-8..-3) {
+        let stiffness = move |t: f64, i: usize, j: usize| match i == j {
+            true => [1.0, 2.56][i],
+            false => -2.0 * k * (2.6 * t).cos(),
+        };
+        let m = monodromy(&hill(2, stiffness).unwrap(), &Magnus6, [0.0, period], 1000).unwrap();
+        for error in [1e-8, 1e-10, 1e-12].into_iter().filter(|e| 50.0 * e < k) {
+            let found = Stability::of(&m, error).unwrap();
+            let rate = found.growth / period / (k / (2.0 * 1.6f64.sqrt()));
+            let right = (rate - 1.0).abs() < 1e-3 + k && !found.is_bounded;
+            assert!(right, "K = {k:e}, error = {error:e}: {rate} of the rate, {found:?}");
+        }
+    }
+}
+
 #[test]
 fn beam_lines() {
     // Elements against the flow of their own equations.

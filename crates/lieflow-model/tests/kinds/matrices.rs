@@ -111,6 +111,31 @@ fn a_translation_is_not_stable() {
     assert_eq!(fact(&of, "stable"), 0.0);
 }
 
+/// Two oscillators with ω = 1, √2.56 and a drive of 2K cos 2.6t between them grow by K/(2√1.6), to first order in K; a mode
+/// with ẍ = g²x by g.
+#[test]
+fn slow_growth_beside_an_oscillator() {
+    let see = |problem: &str, rate: f64| {
+        let of = scene(problem, "name = \"magnus6\"", "t_span = [0, 2]\ndt = 0.1", "[\"map\"]");
+        let found = fact(&of, "growth_rate");
+        assert!((found / rate - 1.0).abs() < 2e-3, "{problem}: {found:e}, expected {rate:e}");
+        assert_eq!(fact(&of, "stable"), 0.0, "{problem}");
+    };
+    for k in [1e-7, 4e-7, 1.6e-6, 4e-6, 8e-6, 1.6e-5, 1e-4, 1e-3] {
+        let problem = format!(
+            "kind = \"hill\"\na = [[1, 0], [0, 2.56]]\nq = [[0, {k:e}], [{k:e}, 0]]\n\
+             period = 2.41660973353061"
+        );
+        see(&problem, k / (2.0 * 1.6f64.sqrt()));
+    }
+    for square in [1e-11f64, 1e-10, 1e-9, 1e-7, 1e-5, 1e-3] {
+        let problem = format!(
+            "kind = \"hill\"\na = [[-{square:e}, 0], [0, 1]]\nq = [[0, 0], [0, 0]]\nperiod = 1.0"
+        );
+        see(&problem, square.sqrt());
+    }
+}
+
 /// Without a drive the solutions of Hill's equation are cosines.
 #[test]
 fn hills_equation_without_a_drive() {
