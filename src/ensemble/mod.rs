@@ -10,8 +10,9 @@
 //!
 //! These are the methods `rkmk4` and `rk4-mg` of the catalog, with the same results to rounding. Blocks have 64 bodies. A
 //! block takes all its steps before the next block starts, so the cost per body does not grow with their number. The
-//! formulas of a block have no branch. If a stage turns by more than one radian, or is not finite, the step of this
-//! body is repeated by the scalar method. It is slower, and it returns the error.
+//! formulas of a block have no branch. If a stage turns by more than one radian, or m is not finite, the step of this
+//! body is repeated by the scalar method. It is slower, and it returns the error. [`EnsembleMethod::Rk4`] may blow g up where
+//! it keeps m. If a g of a block is not finite at the end, all of its steps are repeated by the scalar method.
 //!
 //! Blocks are independent: the results are the same to the bit on any number of threads.
 //!
@@ -35,7 +36,7 @@ use self::step::{Classical, InCay, InExp, MOTION, OneStep};
 use crate::error::Error;
 use crate::groups::{RESIDUAL_MAX, So3};
 use crate::problems::BodyState;
-use crate::so3::{Lane, SERIES, SMALL};
+use crate::so3::{Lane, SERIES, SMALL, in_range};
 
 /// How an ensemble takes its steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -334,6 +335,7 @@ fn steps<Rule: OneStep, const FUSED: bool, const ROWS: usize>(
     block: &mut Block<ROWS>,
     first: usize,
 ) -> Result<(), Error> {
+    let start = block.state;
     let (mut spare, mut is_spare, mut done) = (block.state, false, Ok(()));
     let mut work = Scratch { guard: [0.0; BLOCK], motion: [[0.0; BLOCK]; MOTION] };
     for n in 1..=way.steps {
@@ -352,6 +354,10 @@ fn steps<Rule: OneStep, const FUSED: bool, const ROWS: usize>(
     }
     if is_spare {
         block.state = spare;
+    }
+    if !Rule::KEEPS_GROUP && !are_finite(&block.state.g) {
+        block.state = start;
+        done = alone::<Rule, ROWS>(way, block, first);
     }
     if !Rule::KEEPS_GROUP {
         block.square = squares(&block.state.m);
@@ -446,6 +452,32 @@ fn vector(x: &Vectors, i: usize) -> Vector3<f64> {
     Vector3::new(x[0][i], x[1][i], x[2][i])
 }
 
+/// Are all rows of g finite?
+#[inline(always)]
+fn are_finite<const ROWS: usize>(g: &[Vectors; ROWS]) -> bool {
+    let all_below = |x: &Numbers| x.iter().fold(true, |all, x| all & (x.abs() <= f64::MAX));
+    g.iter().flatten().fold(true, |all, x| all & all_below(x))
+}
+
+/// All steps of a block by the scalar method, or those before the first one that fails.
+#[cold]
+#[inline(never)]
+fn alone<Rule: OneStep, const ROWS: usize>(
+    way: Way,
+    block: &mut Block<ROWS>,
+    first: usize,
+) -> Result<(), Error> {
+    // Lanes without a body have 1/J = 0.
+    let guard = block.inverse[0].map(|inverse| if inverse > 0.0 { f64::NAN } else { 0.0 });
+    for _ in 0..way.steps {
+        let from = block.state;
+        let mut to = from;
+        again::<Rule, ROWS>(way.h, &guard, &block.inverse, &from, &mut to, first)?;
+        block.state = to;
+    }
+    Ok(())
+}
+
 /// Repeats the bodies with a large guard by the scalar method.
 #[cold]
 #[inline(never)]
@@ -480,21 +512,24 @@ fn again<Rule: OneStep, const ROWS: usize>(
     Ok(())
 }
 
-/// g ← g − ½ g (gᵀg − 𝟙): a step of Newton–Schulz.
+/// g ← g − ½ g (gᵀg − 𝟙): a step of Newton–Schulz. It converges for a small residual, and a larger one is left.
 #[inline(always)]
 fn restore<const ROWS: usize>(g: &mut [Vectors; ROWS]) {
     for i in 0..BLOCK {
-        let mut e = [[0.0; 3]; 3];
+        let (mut e, mut square) = ([[0.0; 3]; 3], 0.0);
         for (a, e) in e.iter_mut().enumerate() {
             for (b, e) in e.iter_mut().enumerate() {
                 let products = g.iter().map(|row| row[a][i] * row[b][i]);
                 *e = 0.5 * products.sum::<f64>() - if a == b { 0.5 } else { 0.0 };
+                square += 4.0 * *e * *e;
             }
         }
+        let is_near = square < RESIDUAL_MAX * RESIDUAL_MAX;
         for row in g.iter_mut() {
             let x = vector(row, i);
             for c in 0..3 {
-                row[c][i] -= x[0] * e[0][c] + x[1] * e[1][c] + x[2] * e[2][c];
+                let change = x[0] * e[0][c] + x[1] * e[1][c] + x[2] * e[2][c];
+                row[c][i] -= if is_near { change } else { 0.0 };
             }
         }
     }
@@ -510,8 +545,8 @@ fn squares(m: &Vectors) -> Numbers {
 fn restore_momenta(square: &Numbers, m: &mut Vectors) {
     for (i, found) in squares(m).into_iter().enumerate() {
         let missing = 1.0 - found / square[i];
-        // Not a number where squares leave the range, and at m = 0.
-        let step = if missing.abs() < RESIDUAL_MAX { 0.5 * missing } else { 0.0 };
+        let is_near = in_range(square[i]) && missing.abs() < RESIDUAL_MAX;
+        let step = if is_near { 0.5 * missing } else { 0.0 };
         for m in m.iter_mut() {
             m[i] += step * m[i];
         }

@@ -9,7 +9,7 @@ use lieflow::maps::{Cay, Exp};
 use lieflow::methods::tableau::RK4;
 use lieflow::methods::{Method, Rk, Rkmk};
 use lieflow::problems::{Exact, RigidBodyState};
-use lieflow::{Error, LieGroup, SaveAt, StepError, TimeGrid, integrate};
+use lieflow::{Error, LieGroup, RunError, SaveAt, StepError, TimeGrid, integrate};
 use nalgebra::{Matrix3, Vector3};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
@@ -280,5 +280,74 @@ fn bodies_are_copied_into_others() {
                 assert_eq!(other.attitude(i), next.attitude(i));
             }
         }
+    }
+}
+
+/// The classical method may blow g up where it keeps m. It then ends as the same method of the catalog does, and no body of
+/// the block has moved in that step.
+#[test]
+fn attitudes_that_overflow_end_the_run() {
+    let (inertia, momentum) = ([1.0, 2.0, 3.0], [0.0, 0.0, 30.0]);
+    let body = RigidBodyState::new(inertia).expect("a body");
+    let grid = TimeGrid::with_steps([0.0, 300.0], 300).expect("a grid");
+    let mut y = body.state(momentum, Matrix3::identity()).expect("a state");
+    let alone = integrate(&body, &Rk(RK4), &grid, &SaveAt::Ends, &mut y, |_, _| {});
+    let Err(RunError::Step(failure)) = alone else { panic!("{alone:?}") };
+    for fast in [0, 77, 129] {
+        let mut momenta = [[0.1, 0.2, 0.3]; 130];
+        momenta[fast] = momentum;
+        let start = Ensemble::new(&[inertia; 130], &momenta).expect("bodies");
+        let mut bodies = start.with_attitudes(&[Matrix3::identity(); 130]).expect("attitudes");
+        let mut after = bodies.clone();
+        match bodies.advance(EnsembleMethod::Rk4, 1.0, 300, 1) {
+            Err(Error::Element { index, source }) => {
+                assert_eq!((index, *source), (fast, Error::Map(failure.source)));
+            }
+            other => panic!("{other:?}"),
+        }
+        // Its block is at the step before, and all of its numbers are finite.
+        let steps = failure.step;
+        after.advance(EnsembleMethod::Rk4, 1.0, steps, 1).expect("the steps before");
+        for i in (0..130).filter(|i| i / 64 == fast / 64) {
+            // The scalar method took the steps, with another rounding.
+            let [(m, g), (m_after, g_after)] = [&bodies, &after].map(|bodies| {
+                (bodies.momentum(i).expect("a body"), bodies.attitude(i).expect("an attitude"))
+            });
+            let (size, gap) = (g_after.amax(), (g - g_after).amax());
+            assert!((m - m_after).norm() < 1e-12 && gap < 1e-11 * size, "{i}: {gap:e} of {size:e}");
+        }
+    }
+}
+
+/// An attitude that another method has moved far off the rotations is not corrected: g ← g − ½g(gᵀg − 𝟙) diverges there.
+#[test]
+fn attitudes_far_off_the_rotations_are_not_corrected() {
+    let start = Ensemble::new(&[[1.0, 2.0, 3.0]], &[[0.0, 0.0, 30.0]]).expect("a body");
+    let mut body = start.with_attitudes(&[Matrix3::identity()]).expect("an attitude");
+    body.advance(EnsembleMethod::Rk4, 0.5, 2, 1).expect("steps");
+    let size = body.attitude(0).expect("an attitude").norm();
+    assert!(size > 400.0, "{size}");
+    for method in [EnsembleMethod::Rkmk4Exp, EnsembleMethod::Rkmk4Cay] {
+        let mut body = body.clone();
+        for _ in 0..8 {
+            body.advance(method, 0.01, 64, 1).expect("steps");
+            // Rotations keep the norm.
+            let now = body.attitude(0).expect("an attitude").norm();
+            assert!((now / size - 1.0).abs() < 1e-12, "{method:?}: {now} of {size}");
+        }
+    }
+}
+
+/// Where the square of |m| leaves the range of numbers, |m| is not corrected, and keeps its digits.
+#[test]
+fn small_momenta_keep_their_size() {
+    for power in [-150, -155, -158, -160, -161, -162, -200, -300] {
+        let unit = 10f64.powi(power);
+        let (inertia, momentum) = ([unit, 2.0 * unit, 3.0 * unit], [0.2, 0.5, 3.0]);
+        let mut body = Ensemble::new(&[inertia], &[momentum.map(|m| m * unit)]).expect("a body");
+        body.advance(EnsembleMethod::Rkmk4Exp, 0.05, 6400, 1).expect("steps");
+        let m = body.momentum(0).expect("a body") / unit;
+        let gap = m.norm() / Vector3::from(momentum).norm() - 1.0;
+        assert!(gap.abs() < 1e-12, "1e{power}: {gap:e}");
     }
 }
