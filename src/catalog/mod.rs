@@ -44,7 +44,7 @@ pub use problems::{Fact, fluids};
 use core::str::FromStr;
 
 use crate::error::Error;
-use crate::maps::{ExpOrCay, FromName, MapsByName, NamedMap};
+use crate::maps::{EXPECTED_Q, ExpOrCay, FromName, MapsByName, NamedMap};
 pub use crate::maps::{MAPS, MapInfo};
 use crate::methods::{AnyMethod, tableau};
 use crate::names::same;
@@ -218,12 +218,11 @@ impl FromStr for MethodSpec {
         let mut spec = MethodSpec::new(words.next().unwrap_or_default(), None);
         for word in words {
             if let Some(q) = word.strip_prefix("q=") {
-                let q = q.parse().map_err(|_| Error::OutOfRange {
-                    arg: "q".into(),
-                    value: q.parse().unwrap_or(f64::NAN),
-                    expected: "a whole number from 0 on, as in q=2".into(),
-                })?;
-                spec.q = Some(q);
+                let with = spec.label();
+                if spec.q.replace(q_of(q)?).is_some() {
+                    let why = "it has a q already, and a method has one";
+                    return Err(Error::Unsupported { what: "another q", with, why });
+                }
             } else if let Some(tableau) = TABLEAUS.iter().find(|t| same(t.name, word)) {
                 let with = spec.label();
                 if spec.tableau.replace(tableau.name.into()).is_some() {
@@ -243,6 +242,14 @@ impl FromStr for MethodSpec {
         }
         spec.spelt()
     }
+}
+
+/// The q of a name.
+fn q_of(text: &str) -> Result<usize, Error> {
+    text.parse().map_err(|_| match text.parse::<f64>() {
+        Ok(value) if !value.is_nan() => Error::out_of_range("q", value, EXPECTED_Q),
+        _ => unknown("q", text, [EXPECTED_Q].into_iter()),
+    })
 }
 
 fn unknown(kind: &'static str, name: &str, expected: impl Iterator<Item = &'static str>) -> Error {

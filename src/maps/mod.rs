@@ -54,7 +54,7 @@ pub use functions::{
 };
 pub use named::{AllMaps, ExpOrCay, Groups, MAPS, MapInfo, MapsByName, NamedMap};
 #[cfg(feature = "dense")]
-pub(crate) use named::{FromName, Serves};
+pub(crate) use named::{EXPECTED_Q, FromName, Serves};
 pub use pade22::Pade22;
 pub use parts::{Each, Pair};
 

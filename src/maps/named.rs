@@ -279,6 +279,8 @@ named_map! {
 
 /// The largest q that a name may state.
 const TERMS_MOST: usize = 1000;
+/// What a name may state as q.
+pub(crate) const EXPECTED_Q: &str = "a whole number from 0 to 1000, as in q=2";
 
 /// A type of maps that are found by their names.
 pub trait FromName: Copy + Send + Sync + 'static {
@@ -301,7 +303,7 @@ impl FromName for NamedMap {
         match (info.map, q) {
             // Terms beyond are below the smallest number, wherever the series converges.
             (NamedMap::Exp(_), Some(q)) if q > TERMS_MOST => {
-                Err(Error::out_of_range("q", q as f64, format!("at most {TERMS_MOST}")))
+                Err(Error::out_of_range("q", q as f64, EXPECTED_Q))
             }
             (NamedMap::Exp(exp), Some(q)) => Ok(NamedMap::Truncated(exp.truncated(q))),
             (map, None) => Ok(map),

@@ -115,9 +115,26 @@ fn unknown_names_are_answered_with_the_list() {
         says(&refused, &TABLEAUS.iter().map(|t| t.name).collect::<Vec<_>>());
     }
     assert!(order_of(&MethodSpec::new("", None)).is_err());
-    for (text, part) in [("rkmk heun bs3", "tableau"), ("rkmk4 exp exp", "map")] {
+    for (text, part) in
+        [("rkmk heun bs3", "tableau"), ("rkmk4 exp exp", "map"), ("rkmk4 q=2 exp q=3", "q")]
+    {
         says(text.parse::<MethodSpec>().unwrap_err(), &[&format!("has a {part} already")]);
     }
+    for (q, said) in [
+        ("abc", "unknown q `abc`: "),
+        ("nan", "unknown q `nan`: "),
+        ("", "unknown q ``: "),
+        ("-1", "q = -1, "),
+        ("0.5", "q = 0.5, "),
+        ("1001", "q = 1001, "),
+        ("99999999999999999999", "q = 1e20, "),
+        ("inf", "q = inf, "),
+    ] {
+        let error = format!("rkmk4 q={q}").parse::<MethodSpec>().unwrap_err();
+        let expected = format!("{said}expected a whole number from 0 to 1000, as in q=2");
+        assert_eq!(error.to_string(), expected, "{q}");
+    }
+    assert!("rkmk4 q=1000".parse::<MethodSpec>().is_ok());
 }
 
 /// Case and hyphens do not count, and what comes back is spelt as in the listings.
