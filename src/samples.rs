@@ -146,7 +146,8 @@ impl Samples {
     /// # Errors
     /// [`Error::Length`] for fewer than 2 times, and for a column of another length than the times. [`Error::OutOfRange`],
     /// which names the entry, for: times that do not increase; a number that is not finite; values so far apart that their
-    /// slope is not finite.
+    /// slope, or a coefficient of the curve, is not finite. Of all intervals whose curve is not finite, the entry is at the end
+    /// of the steepest.
     pub fn new<C: AsRef<[f64]>>(
         times: &[f64],
         columns: &[C],
@@ -183,12 +184,17 @@ impl Samples {
                 });
             }
             Error::all_finite(&format!("columns[{j}]"), values)?;
-            for (k, piece) in fit(&steps, values, interpolation).into_iter().enumerate() {
-                if !piece.iter().all(|x| x.is_finite()) {
-                    let arg = format!("columns[{j}][{}]", k + 1);
-                    let expected = "a value whose slope from the one before is finite";
-                    return Err(Error::out_of_range(arg, values[k + 1], expected));
-                }
+            let means = means(&steps, values, interpolation);
+            let fitted = fit(&steps, values, &means, interpolation);
+            // The first one of the steepest.
+            let infinite =
+                (0..fitted.len()).rev().filter(|&k| fitted[k].iter().any(|x| !x.is_finite()));
+            if let Some(k) = infinite.max_by(|&a, &b| means[a].abs().total_cmp(&means[b].abs())) {
+                let arg = format!("columns[{j}][{}]", k + 1);
+                let expected = "a value whose slope from the one before is finite, and so is the curve through it";
+                return Err(Error::out_of_range(arg, values[k + 1], expected));
+            }
+            for (k, piece) in fitted.into_iter().enumerate() {
                 pieces[k * columns.len() + j] = piece;
             }
         }
@@ -323,18 +329,27 @@ fn polynomial([a, b, c, d]: [f64; 4], s: f64) -> f64 {
     a + s * (b + s * (c + s * d))
 }
 
-/// The polynomials of a column in the time since the start of their interval. Of values that are held there is one at the
-/// last time, too.
-fn fit(steps: &[f64], values: &[f64], interpolation: Interpolation) -> Vec<[f64; 4]> {
-    if interpolation == Interpolation::Previous {
-        return values.iter().map(|x| [*x, 0.0, 0.0, 0.0]).collect();
-    }
+/// The mean slope of the curve in each interval; of [`Interpolation::MeanRate`] the mean rate.
+fn means(steps: &[f64], values: &[f64], interpolation: Interpolation) -> Vec<f64> {
     let mean = |(k, h): (usize, &f64)| match interpolation {
         Interpolation::MeanRate => values[k + 1] / h,
         _ => (values[k + 1] - values[k]) / h,
     };
-    let means: Vec<f64> = steps.iter().enumerate().map(mean).collect();
-    let slopes = spline(steps, &means);
+    steps.iter().enumerate().map(mean).collect()
+}
+
+/// The polynomials of a column in the time since the start of their interval. Of values that are held there is one at the
+/// last time, too.
+fn fit(
+    steps: &[f64],
+    values: &[f64],
+    means: &[f64],
+    interpolation: Interpolation,
+) -> Vec<[f64; 4]> {
+    if interpolation == Interpolation::Previous {
+        return values.iter().map(|x| [*x, 0.0, 0.0, 0.0]).collect();
+    }
+    let slopes = spline(steps, means);
     let piece = |(k, h): (usize, &f64)| {
         let [before, after] = [slopes[k], slopes[k + 1]];
         let second = (3.0 * means[k] - 2.0 * before - after) / h;

@@ -35,7 +35,7 @@ use pulp::{Arch, Simd, WithSimd};
 use self::step::{Classical, InCay, InExp, MOTION, OneStep};
 use crate::error::Error;
 use crate::groups::{RESIDUAL_MAX, So3};
-use crate::problems::BodyState;
+use crate::problems::{BodyState, check_moment};
 use crate::so3::{Lane, SERIES, SMALL, in_range};
 
 /// How an ensemble takes its steps.
@@ -133,7 +133,7 @@ impl Ensemble {
     ///
     /// # Errors
     /// [`Error::Shape`] for lists of different lengths; [`Error::OutOfRange`] for a moment of inertia that
-    /// is not positive and finite, or a momentum that is not finite, with its index.
+    /// is not positive and finite or has no finite reciprocal, or a momentum that is not finite, with its index.
     pub fn new(inertia: &[[f64; 3]], momentum: &[[f64; 3]]) -> Result<Self, Error> {
         let len = inertia.len();
         check_length("momentum", momentum.len(), len)?;
@@ -142,10 +142,7 @@ impl Ensemble {
             let block = &mut blocks[i / BLOCK];
             for k in 0..3 {
                 let (j, m) = (inertia[k], momentum[k]);
-                if !(j > 0.0 && (1.0 / j).is_finite() && j.is_finite()) {
-                    let arg = format!("inertia[{i}][{k}]");
-                    return Err(Error::out_of_range(arg, j, "a finite number > 0"));
-                }
+                check_moment(j, || format!("inertia[{i}][{k}]"))?;
                 if !m.is_finite() {
                     Error::finite(format!("momentum[{i}][{k}]"), m)?;
                 }
@@ -160,8 +157,8 @@ impl Ensemble {
     /// Adds the attitudes of the bodies, rotations from body to space.
     ///
     /// # Errors
-    /// [`Error::Shape`] for a list of another length; as
-    /// [`So3::check_element`](crate::groups::So3::check_element) for a matrix that is not a rotation.
+    /// [`Error::Shape`] for a list of another length; [`Error::Element`] with the number of the body for a matrix that is not a
+    /// rotation, and the reason of [`So3::check_element`](crate::groups::So3::check_element).
     pub fn with_attitudes(self, attitudes: &[Matrix3<f64>]) -> Result<Self, Error> {
         check_length("attitudes", attitudes.len(), self.len)?;
         let mut blocks = vec![Block::EMPTY; self.len.div_ceil(BLOCK)];
@@ -170,7 +167,8 @@ impl Ensemble {
             (block.inverse, block.square, block.state.m) = (*inverse, *square, *m);
         }
         for (i, g) in attitudes.iter().enumerate() {
-            So3::new().check_element("attitudes", g, ROTATION)?;
+            let refused = |source| Error::Element { index: i, source: Box::new(source) };
+            So3::new().check_element("attitudes", g, ROTATION).map_err(refused)?;
             for (r, row) in blocks[i / BLOCK].state.g.iter_mut().enumerate() {
                 for (c, entry) in row.iter_mut().enumerate() {
                     entry[i % BLOCK] = g[(r, c)];
@@ -226,8 +224,8 @@ impl Ensemble {
         self.body(i).map(|(inverse, m)| 0.5 * inverse.dot(&m.component_mul(&m)))
     }
 
-    /// Takes `steps` steps of size h for every body, on this number of threads. The caller's thread is one of them. Only
-    /// the other threads allocate.
+    /// Takes `steps` steps of size h for every body, on this number of threads. The caller's thread is one of them. Steps do
+    /// not allocate; the start of the threads does, on the caller's thread, too.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] for an h that is not finite, or no threads; [`Error::Element`] with the number

@@ -89,10 +89,10 @@ pub use oja::Oja;
 #[cfg(feature = "dense")]
 pub use periodic::{LinearHamiltonian, hill, mathieu};
 pub use quaternion_body::RigidBodyQuaternion;
-pub(crate) use rigid_body::Place;
 pub use rigid_body::{
     BodyFrame, BodyState, Exact, Frame, FreeBody, RigidBody, RigidBodyAttitude, RigidBodyState,
 };
+pub(crate) use rigid_body::{Place, check_moment};
 #[cfg(feature = "dense")]
 pub use rigid_body::{RigidBodyN, RigidBodyNAttitude, manakov_integrals};
 #[cfg(feature = "dense")]

@@ -226,8 +226,16 @@ fn what_is_refused() {
     let mut bodies = Ensemble::new(&[good; 3], &[momentum; 3]).expect("bodies");
     let error = said(bodies.clone().with_attitudes(&[Matrix3::identity(); 2]));
     assert!(error.starts_with("attitudes: 2×1, expected 3×1"), "{error}");
-    let error = said(bodies.clone().with_attitudes(&[Matrix3::identity() * 2.0; 3]));
-    assert!(error.starts_with("attitudes"), "{error}");
+    let mut attitudes = [Matrix3::identity(); 3];
+    attitudes[2] *= 2.0;
+    let error = said(bodies.clone().with_attitudes(&attitudes));
+    assert!(error.starts_with("element 2: attitudes: not in SO(3)"), "{error}");
+    // What has no reciprocal is refused with the least that has one.
+    let error = said(Ensemble::new(&[[1e-310, 1.0, 1.0]], &[momentum]));
+    let least = (1.0 / f64::MAX).next_up();
+    assert!(error.contains(&format!("at least {least:e}")), "{error}");
+    assert!(Ensemble::new(&[[least; 3]], &[momentum]).is_ok());
+    assert!(Ensemble::new(&[[least.next_down(); 3]], &[momentum]).is_err());
     let mut advance = |h, threads| bodies.advance(EnsembleMethod::Rk4, h, 1, threads);
     assert!(advance(f64::NAN, 1).is_err() && advance(0.1, 0).is_err() && advance(0.0, 1).is_ok());
 

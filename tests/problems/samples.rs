@@ -198,6 +198,16 @@ fn a_table_that_is_none_is_refused() {
         let message = "columns[0][1] = 1e307, expected a value whose slope";
         assert!(error.starts_with(message), "{error}");
     }
+    // Of a curve that is not finite in all intervals the entry at the end of the steepest is named.
+    for at in 0..9 {
+        let mut values = [0.0; 10];
+        values[at] = 1e308;
+        values[at + 1] = -1e308;
+        let times: Vec<f64> = (0..10).map(f64::from).collect();
+        let error = Samples::new(&times, &[values], Cubic).unwrap_err().to_string();
+        let message = format!("columns[0][{}] = -1e308, expected a value whose slope", at + 1);
+        assert!(error.starts_with(&message), "{error}");
+    }
     let error = Interpolation::named("quadratic").unwrap_err().to_string();
     assert_eq!(
         error,

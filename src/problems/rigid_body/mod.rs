@@ -25,12 +25,23 @@ pub use state::{BodyFrame, BodyState, RigidBodyState};
 
 use crate::error::Error;
 
+/// The least number with a finite reciprocal.
+const LEAST_MOMENT: f64 = (1.0 / f64::MAX).next_up();
+
 /// Checks that principal moments of inertia are finite and positive, with finite reciprocals.
 pub(crate) fn check_inertia(inertia: &[f64]) -> Result<(), Error> {
-    for (i, &j) in inertia.iter().enumerate() {
-        if !(j.is_finite() && j > 0.0 && (1.0 / j).is_finite()) {
-            return Err(Error::out_of_range(format!("inertia[{i}]"), j, "a finite number > 0"));
-        }
+    let mut moments = inertia.iter().enumerate();
+    moments.try_for_each(|(i, &j)| check_moment(j, || format!("inertia[{i}]")))
+}
+
+/// Checks one moment of inertia, which `arg` names.
+pub(crate) fn check_moment(j: f64, arg: impl FnOnce() -> String) -> Result<(), Error> {
+    if j.is_finite() && j >= LEAST_MOMENT {
+        return Ok(());
     }
-    Ok(())
+    let mut expected = String::from("a finite number > 0");
+    if j > 0.0 && j < LEAST_MOMENT {
+        expected += &format!(" with a finite reciprocal, at least {LEAST_MOMENT:e}");
+    }
+    Err(Error::out_of_range(arg(), j, expected))
 }
