@@ -150,7 +150,20 @@ impl<'a, Y> Event<'a, Y> {
     /// Example: g > 0 is a rate that the state knows, and the number of points is chosen so that h · g / points
     /// stays below a bound. Such an event has no zeros; it sees the state often enough.
     pub fn points_by(mut self, points: fn(f64, [f64; 2]) -> u32) -> Self {
-        self.rule.points = Points::By(points);
+        self.rule.points = Points::By(points, |_, _| false);
+        self
+    }
+    /// As [`points_by`](Self::points_by), and g is evaluated in the middle of each part between two of these points, and again
+    /// in the middles of its halves, while `is_halved(h, [g₀, g₁])`. h > 0 is the size of the part, and g₀ and g₁ are the
+    /// values of g at its ends. A step has at most 100 000 points.
+    ///
+    /// Example: g > 0 is a rate that is large for a short while only, and h · max(g₀, g₁) shall stay below a bound.
+    pub fn points_by_halves(
+        mut self,
+        points: fn(f64, [f64; 2]) -> u32,
+        is_halved: fn(f64, [f64; 2]) -> bool,
+    ) -> Self {
+        self.rule.points = Points::By(points, is_halved);
         self
     }
     /// The name.
@@ -162,7 +175,7 @@ impl<'a, Y> Event<'a, Y> {
 impl EventRule {
     /// True if it may have zeros.
     pub(super) fn has_zeros(&self) -> bool {
-        !matches!(self.points, Points::By(_))
+        !matches!(self.points, Points::By(..))
     }
 
     /// The search for zeros in a step at whose end g is `last`. `turns` says that the state turns by more than a radian.
@@ -172,7 +185,7 @@ impl EventRule {
         let is_long = match points {
             Points::AsNeeded => has_long_steps || turns,
             Points::Each(points) => points > 0 && turns,
-            Points::By(_) => false,
+            Points::By(..) => false,
         };
         Search { direction, points, is_long, seen, first_step, span, last, epsilon }
     }
@@ -245,7 +258,7 @@ impl Events {
         let always = |event: &EventRule| match event.points {
             Points::Each(points) => points > 0,
             Points::AsNeeded => event.has_long_steps,
-            Points::By(_) => false,
+            Points::By(..) => false,
         };
         self.all.iter().any(always)
     }

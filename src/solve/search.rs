@@ -38,8 +38,9 @@ pub(super) enum Points {
     AsNeeded,
     /// So many in each step, and as many between them; none but the ends of steps for 0.
     Each(u32),
-    /// As many as this says of the step size and of g at the two ends.
-    By(fn(f64, [f64; 2]) -> u32),
+    /// As many as the first says of the step size and of g at the two ends. Between them a part is halved while the second
+    /// says so of its size and of g at its ends.
+    By(fn(f64, [f64; 2]) -> u32, fn(f64, [f64; 2]) -> bool),
 }
 
 /// The values of g up to the last point.
@@ -114,9 +115,12 @@ impl Search {
     /// True if the ends of the step tell that there is no zero.
     #[inline]
     pub(super) fn is_idle(&self) -> bool {
-        let Seen { value, anew, .. } = self.seen;
-        let is_simple = !self.is_long && self.points(value) == 0 && !self.may_have_two(value);
-        !anew && is_simple && passes(value, self.last).is_none()
+        let Search { seen: Seen { value, anew, .. }, span: [start, end], last, .. } = *self;
+        let is_simple = !self.is_long
+            && self.points(value) == 0
+            && !self.may_have_two(value)
+            && !self.is_halved([(start, value), (end, last)]);
+        !anew && is_simple && passes(value, last).is_none()
     }
 
     /// The number of points within the step that a caller asks for, if g is `first` at its start.
@@ -126,8 +130,36 @@ impl Search {
         match self.points {
             Points::AsNeeded => 0,
             Points::Each(points) => points,
-            Points::By(points) => points((end - start).abs(), [first, last]).min(POINTS_MAX),
+            Points::By(points, _) => points((end - start).abs(), [first, last]).min(POINTS_MAX),
         }
+    }
+
+    /// True if a part between two points is halved.
+    #[inline]
+    fn is_halved(&self, [left, right]: [(f64, f64); 2]) -> bool {
+        match self.points {
+            Points::By(_, is_halved) => is_halved((right.0 - left.0).abs(), [left.1, right.1]),
+            _ => false,
+        }
+    }
+
+    /// Calls `found` with the zeros in a part, and looks at g in its middle, and in the middles of its halves, while these are
+    /// halved. So many points are left.
+    fn zeros_of_halves(
+        &self,
+        [left, right]: [(f64, f64); 2],
+        points_left: &mut u32,
+        g: &mut dyn FnMut(f64) -> Result<f64, RunError>,
+        found: &mut dyn FnMut(f64, bool),
+    ) -> Result<(), RunError> {
+        let t = left.0 + 0.5 * (right.0 - left.0);
+        if *points_left == 0 || t == left.0 || t == right.0 || !self.is_halved([left, right]) {
+            return self.zero_between([left, right], g, found);
+        }
+        *points_left -= 1;
+        let middle = (t, g(t)?);
+        self.zeros_of_halves([left, middle], points_left, g, found)?;
+        self.zeros_of_halves([middle, right], points_left, g, found)
     }
 
     /// True if the step may have two zeros, if g is `first` at its start, and these are searched for.
@@ -135,7 +167,7 @@ impl Search {
     fn may_have_two(&self, first: f64) -> bool {
         let Search { seen, span: [start, end], last, .. } = *self;
         match (self.points, seen.before) {
-            (Points::Each(0) | Points::By(_), _) => false,
+            (Points::Each(0) | Points::By(..), _) => false,
             (_, None) => true,
             (_, Some([before, length])) => {
                 let sizes = [length, (end - start).abs()];
@@ -179,6 +211,15 @@ impl Search {
         let points = self.points(left.1);
         let (begin, whole) = (left.0, end - left.0);
         let places = (1..=points).map(|i| begin + whole * f64::from(i) / (f64::from(points) + 1.0));
+        if let Points::By(..) = self.points {
+            let mut points_left = POINTS_MAX - points;
+            for t in places.chain([end]) {
+                let right = (t, if t == end { last } else { g(t)? });
+                self.zeros_of_halves([left, right], &mut points_left, g, found)?;
+                left = right;
+            }
+            return Ok((seen, true));
+        }
         if !self.is_long && !self.may_have_two(left.1) {
             self.zeros_among([left, (end, last)], places, g, found)?;
             return Ok((seen, true));

@@ -93,37 +93,6 @@ fn t13_events_in_odd_places() {
     }
 }
 
-/// The points within a step are as many as the size of the step and g at its two ends say.
-#[test]
-fn points_by_the_ends_of_a_step() {
-    let problem = boxed_of_time(free(), LeftTranslation, |_: f64, v: &mut V| *v = V::x());
-    for span in [[0.0, 4.0], [4.0, 0.0]] {
-        let seen = RefCell::new(Vec::new());
-        let event = Event::new("rate", |t, _: &V| {
-            seen.borrow_mut().push(t);
-            4.0 + t
-        });
-        let event = event.points_by(|h, [first, last]| (h * first.max(last)) as u32);
-        Solve::new(&problem, &Rk(DOPRI5), span)
-            .dt(0.5)
-            .event(event)
-            .run(V::zeros())
-            .expect("a run");
-        let mut expected = vec![0.0];
-        for step in 0..8 {
-            let (start, n) = (0.5 * f64::from(step), (0.25 * f64::from(9 + step)) as u32);
-            expected.extend((1..=n).map(|i| start + 0.5 * f64::from(i) / f64::from(n + 1)));
-            expected.push(start + 0.5);
-        }
-        assert_eq!(expected.len(), 31);
-        let mut seen = seen.into_inner();
-        seen.sort_by(f64::total_cmp);
-        seen.dedup_by(|a, b| (*a - *b).abs() < 1e-12);
-        let gaps = seen.iter().zip(&expected).map(|(a, b)| (a - b).abs());
-        assert!(seen.len() == 31 && gaps.fold(0.0, f64::max) < 1e-12, "{seen:?}");
-    }
-}
-
 /// Zeros at one time: all are told, in their order, and one that stops does not hide another that changes.
 #[test]
 fn t13_events_at_one_time() {

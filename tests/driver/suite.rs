@@ -10,6 +10,7 @@ mod leaves;
 mod modes;
 mod orbits;
 mod physics;
+mod points;
 mod restore;
 mod roots;
 mod scalars;

@@ -26,6 +26,8 @@ mod motions;
 mod mutants;
 #[path = "kinds/numbers.rs"]
 mod numbers;
+#[path = "kinds/passes.rs"]
+mod passes;
 #[path = "kinds/quantum.rs"]
 mod quantum;
 #[path = "kinds/refused.rs"]

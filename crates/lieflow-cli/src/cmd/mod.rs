@@ -17,6 +17,7 @@ pub mod run;
 pub mod scenes;
 mod shown;
 mod signs;
+mod singular;
 mod stop;
 mod told;
 mod watch;

@@ -302,6 +302,7 @@ pub fn run_scene(
     let drift = watch.drift(&kept.watched, done.taken.steps)?;
     let mut warnings = scene.problem.warnings().to_vec();
     warnings.extend(one_long_step(scene));
+    warnings.extend(kept.lost_in_words());
     let by_events = kept.between.iter().zip(&scene.events).zip(&kept.seen);
     warnings
         .extend(by_events.clone().filter_map(|((between, _), seen)| between.warning(seen.count)));

@@ -12,6 +12,7 @@ use lieflow::{Error, RunError};
 use super::accuracy::Taken;
 use super::between::Between;
 use super::room::Room;
+use super::singular::Singular;
 use crate::error::CliError;
 use crate::output::{
     self, Chosen, Drift, EventSummary, Kind, Progress, RowFile, RowSample, RunState, Seen, Watched,
@@ -44,6 +45,8 @@ pub(super) struct Watch<'a> {
     pub(super) scene: &'a Scene,
     pub(super) model: &'a Model,
     pub(super) written: Vec<&'a Observable>,
+    /// What is written, or what events and formulas are made of.
+    computed: Vec<&'a Observable>,
     /// The columns of what is written, each with its place in a row.
     pub(super) columns: Vec<(&'a str, usize)>,
     pub(super) state: Vec<&'a Observable>,
@@ -61,6 +64,7 @@ impl<'a> Watch<'a> {
         };
         let written = find(&computed[..scene.quantities.len()])?;
         Ok(Watch {
+            computed: find(&computed)?,
             scene,
             model,
             columns: Schema::each_column_once(written.iter().copied()),
@@ -229,9 +233,6 @@ pub(super) struct Done {
     pub(super) t: Option<f64>,
 }
 
-/// Euler angles that are nearer to where they are singular turn fast: a degree, in radians.
-const NEAR_SINGULAR: f64 = 0.0175;
-
 /// Zeros of an event that are drawn.
 const MARKS: usize = 200;
 
@@ -251,8 +252,9 @@ pub(super) struct Recorder<'a> {
     pub(super) seen: Vec<EventSummary>,
     /// What the rows say of each event.
     pub(super) between: Vec<Between>,
-    /// How near each written quantity of Euler angles came to where they are singular, and when.
-    singular: Vec<(f64, f64)>,
+    singular: Vec<Singular<'a>>,
+    /// When turns of values that are followed may have been lost first; NaN: never.
+    lost_at: f64,
     line: Vec<f64>,
     pub(super) overflow: Option<String>,
     /// What could not be written: it ends the run.
@@ -292,7 +294,8 @@ impl<'a> Recorder<'a> {
             watched: Vec::new(),
             not_finite: vec![(0, 0.0); columns().count() - 1],
             seen: events.iter().map(|event| EventSummary::new(&event.name)).collect(),
-            singular: vec![(f64::INFINITY, 0.0); watch.written.len()],
+            lost_at: f64::NAN,
+            singular: watch.computed.iter().filter_map(|angles| Singular::of(angles)).collect(),
             line: Vec::new(),
             overflow: None,
             failure: None,
@@ -318,7 +321,6 @@ impl<'a> Recorder<'a> {
                 for (between, seen) in self.between.iter_mut().zip(&self.seen) {
                     between.see(t, row, seen.count);
                 }
-                self.see_singular(t, row);
                 self.watch.see(t, row, &mut self.watched);
                 self.rows.see(t, row);
                 self.trajectory.row(None, t, &self.line)?;
@@ -339,10 +341,8 @@ impl<'a> Recorder<'a> {
 
     /// Calls `each` with the numbers that the rows alone do not bring back, because they were seen between rows.
     fn each_unshown(&mut self, each: &mut dyn FnMut(&mut f64)) {
-        for (far, t) in &mut self.singular {
-            each(far);
-            each(t);
-        }
+        each(&mut self.lost_at);
+        self.singular.iter_mut().for_each(|singular| singular.each_unshown(each));
         self.between.iter_mut().for_each(|between| between.each_unshown(each));
         self.watched.iter_mut().for_each(|law| law.each_unshown(each));
     }
@@ -353,16 +353,6 @@ impl<'a> Recorder<'a> {
         self.each_unshown(&mut |x| *x = seen.next().unwrap_or(*x));
     }
 
-    /// How near the Euler angles of a row are to where they are singular.
-    fn see_singular(&mut self, t: f64, row: Row<'_>) {
-        for (nearest, angles) in self.singular.iter_mut().zip(&self.watch.written) {
-            let far = angles.branch.distance_to_singular(&row[*angles]);
-            if let Some(far) = far.filter(|far| *far < nearest.0) {
-                *nearest = (far, t);
-            }
-        }
-    }
-
     /// The bytes of all files that grow with the run.
     fn bytes(&self) -> u64 {
         let events = self.events.as_ref().map_or(0, RowFile::bytes);
@@ -371,23 +361,22 @@ impl<'a> Recorder<'a> {
     }
 
     /// What is to be known of Euler angles that came to where they are singular, or near.
-    pub(super) fn singular_in_words(&self) -> Vec<String> {
-        let told = |(&(far, t), angles): (&(f64, f64), &&Observable)| {
-            let (name, t) = (angles.name, output::number(t));
-            let degrees = output::rough(far.to_degrees());
-            match far {
-                _ if far <= Branch::SINGULAR => Some(format!(
-                    "{name} is singular at t = {t}: the first and the third angle turn about one axis there, and the \
-                     third angle keeps its value"
-                )),
-                _ if far <= NEAR_SINGULAR => Some(format!(
-                    "{name} comes within {degrees} degrees of its singular angle at t = {t}: the first and the third \
-                     angle turn fast there, and may lose whole turns; another sequence or the quaternion does not"
-                )),
-                _ => None,
-            }
-        };
-        self.singular.iter().zip(&self.watch.written).filter_map(told).collect()
+    pub(super) fn singular_in_words(&self) -> impl Iterator<Item = String> {
+        self.singular.iter().flat_map(Singular::in_words)
+    }
+
+    /// The warning about turns that may be lost, in quantities that are continuous from row to row.
+    pub(super) fn lost_in_words(&self) -> Option<String> {
+        let followed = self.watch.computed.iter().filter(|one| one.branch != Branch::Single);
+        let names: Vec<&str> = followed.map(|one| one.name).collect();
+        (!self.lost_at.is_nan()).then(|| {
+            format!(
+                "{} may have lost turns since t = {}: the body turns by more than half a turn between two points, and there \
+                 are no points between them, or more than 100 000 in a step. Take shorter steps, or times nearer to t = 0",
+                names.join(", "),
+                output::number(self.lost_at)
+            )
+        })
     }
 
     /// Writes the lines so far.
@@ -449,8 +438,11 @@ impl Watcher for Recorder<'_> {
         self.between.iter_mut().for_each(|between| between.see_end_of_step(t, row));
     }
 
-    fn followed(&mut self, t: f64, row: Row<'_>) {
-        self.see_singular(t, row);
+    fn followed(&mut self, t: f64, row: Row<'_>, is_sure: bool) {
+        if !is_sure && self.lost_at.is_nan() {
+            self.lost_at = t;
+        }
+        self.singular.iter_mut().for_each(|singular| singular.see(t, row));
     }
 
     fn progress(&mut self, t: f64) {

@@ -30,7 +30,7 @@ const STATE: &str = "run.state";
 pub const ROWS: &str = "run.rows";
 
 /// The name of the format, and its version.
-const FORMAT: u64 = u64::from_le_bytes(*b"lf-run\x00\x04");
+const FORMAT: u64 = u64::from_le_bytes(*b"lf-run\x00\x05");
 
 /// The words before the check sum.
 const HEAD: usize = 7;

@@ -24,6 +24,7 @@ mod run;
 mod same_bits;
 mod search;
 mod second_run;
+mod singular;
 mod sizes;
 mod small;
 mod support;

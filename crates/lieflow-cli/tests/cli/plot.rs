@@ -335,24 +335,3 @@ fn a_position_is_a_path_in_space() {
     assert!(folder.read("out/index.html").contains("From the ring to the dot"));
     assert!(folder.names("out").contains(&"time-position.svg".to_string()));
 }
-
-/// Euler angles that come to where they are singular are told.
-#[test]
-fn singular_angles_are_told() {
-    let folder = Folder::new();
-    let told = |start: f64| {
-        let body = format!("omega_body = [0, 1, 0]\neuler.xyz = [0, {start}, 0]");
-        let text = SCENE.replace("omega_body = [0.2, 0.0, 1.0]", &body);
-        folder.write("scene.toml", &text.replace("\"energy\"", "\"euler_xyz\""));
-        folder.lieflow(&["run", "scene.toml", "--out", "out"]).ok()
-    };
-    let half = core::f64::consts::FRAC_PI_2;
-    let text = told(half - 1.0);
-    assert!(text.contains("note: euler_xyz is singular at t = 1:"), "{text}");
-    let text = told(half - 1.01);
-    assert!(
-        text.contains("euler_xyz comes within 0.57 degrees of its singular angle at t = 1:"),
-        "{text}"
-    );
-    assert!(!told(half - 3.0).contains("singular"));
-}

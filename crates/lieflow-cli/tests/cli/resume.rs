@@ -404,7 +404,7 @@ error_check = false
     folder.lieflow(&args).ok();
     let whole = results(&folder, "out");
     let notes = whole.2["notes"].to_string();
-    assert!(notes.contains("of its singular angle at t = 60:"), "{notes}");
+    assert!(notes.contains("of its singular angle at t = 60.05:"), "{notes}");
     assert!(!notes.contains("event"), "{notes}");
     kill_and_resume(&folder, &args);
     let resumed = results(&folder, "out");

@@ -204,8 +204,8 @@ impl Oriented for Driven {
     fn orientation(&self, (g, _): &Point) -> Orientation {
         Orientation::Matrix(*g)
     }
-    fn turn_rate(&self, _: f64, y: &Point) -> f64 {
-        self.omega(y).norm()
+    fn turning(&self, _: f64, y: &Point) -> Vector3<f64> {
+        self.omega(y)
     }
     fn axes(&self) -> Option<Matrix3<f64>> {
         self.spec.axes

@@ -261,8 +261,8 @@ impl<R: TopCoordinates> Oriented for Top<R> {
     fn orientation(&self, y: &PointOf<Self>) -> Orientation {
         R::pose(y).orientation
     }
-    fn turn_rate(&self, _: f64, y: &PointOf<Self>) -> f64 {
-        self.omega(y).norm()
+    fn turning(&self, _: f64, y: &PointOf<Self>) -> Vector3<f64> {
+        self.omega(y)
     }
     fn without_orientation(&self) -> Option<&'static str> {
         (!R::TURNS).then_some("the momentum and the vertical alone are integrated")

@@ -121,9 +121,10 @@ impl Oriented for Motion {
     fn orientation(&self, (g, _): &Pose) -> Orientation {
         Orientation::Matrix(*g)
     }
-    fn turn_rate(&self, t: f64, y: &Pose) -> f64 {
+    fn turning(&self, t: f64, y: &Pose) -> Vector3<f64> {
         let at = variables(t, y);
-        Vector3::from_fn(|i, _| self.twist[i].value(&at)).norm()
+        let omega = Vector3::from_fn(|i, _| self.twist[i].value(&at));
+        if self.in_body { omega } else { y.0.tr_mul(&omega) }
     }
 }
 

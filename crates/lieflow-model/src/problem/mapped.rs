@@ -52,9 +52,9 @@ impl Watcher for OfBase<'_> {
         self.fill(t, of_base);
         self.watcher.end_of_step(t, self.mapped.schema.row(&self.numbers));
     }
-    fn followed(&mut self, t: f64, of_base: Row<'_>) {
+    fn followed(&mut self, t: f64, of_base: Row<'_>, is_sure: bool) {
         self.fill(t, of_base);
-        self.watcher.followed(t, self.mapped.schema.row(&self.numbers));
+        self.watcher.followed(t, self.mapped.schema.row(&self.numbers), is_sure);
     }
     fn progress(&mut self, t: f64) {
         self.watcher.progress(t);

@@ -275,7 +275,8 @@ impl fmt::Debug for Source {
 
 impl Model {
     /// Lets a run follow the choices of these quantities, as the sign of a quaternion, from row to row alone. This is enough for
-    /// a figure. Otherwise they are followed between rows, too: twice for each radian that the state turns.
+    /// a figure. Otherwise they are followed between rows, too: twice for each radian by which
+    /// they change.
     pub fn follow_from_row_to_row(&mut self, names: &[&str]) {
         self.schema.follow_from_row_to_row(names);
         if let Source::Model { base, .. } = &mut self.source {

@@ -72,7 +72,7 @@ pub(crate) struct Quantity<S: System> {
     pub(crate) numbers: fn(&S) -> Numbers,
     /// The choice that makes the columns of a run continuous.
     pub(crate) branch: fn(&S) -> Branch,
-    /// How fast the state turns, in radians per time: the values of points that are half a turn apart may lose turns.
+    /// A bound of how fast the values change, in radians per time: those of points that are half a turn apart may lose turns.
     pub(crate) turn_rate: fn(&S, f64, &PointOf<S>) -> f64,
     law: Keepers<S>,
     /// Is it a distance from M, which the exact motion keeps at 0?
@@ -199,7 +199,7 @@ impl<S: System> Quantity<S> {
         Quantity { branch, ..self }
     }
 
-    /// The state turns this fast at (t, y).
+    /// A bound of how fast the values change at (t, y), in radians.
     pub(crate) const fn turning_by(self, turn_rate: fn(&S, f64, &PointOf<S>) -> f64) -> Self {
         Quantity { turn_rate, ..self }
     }

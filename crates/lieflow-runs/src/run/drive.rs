@@ -10,7 +10,7 @@ use lieflow::solve::{Interpolant, Interrupted, LONG_STEPS, Solution};
 use lieflow::space::Numbers;
 use lieflow::{Error, Event, RunError, Solve};
 
-use super::following::following;
+use super::following::{Followed, following};
 use super::{
     CurvePlace, EventPlan, Fit, Orders, Outcome, Plan, RowCurve, RowsOf, Runnable, SharedRowOf,
     Steps, Watcher,
@@ -97,7 +97,18 @@ pub(super) fn drive_by<P: Runnable>(
         branches.keep_all();
     }
     let branches = RefCell::new(branches);
+    let followed = RefCell::new(Followed::new(steps.t_span()));
+    // What was followed comes before everything else that is seen of a step.
+    let follow = || {
+        followed.borrow_mut().take(
+            |t, numbers| branches.borrow_mut().follow(t, numbers),
+            |t, numbers, is_sure| {
+                watcher.borrow_mut().followed(t, schema.row(numbers), is_sure);
+            },
+        );
+    };
     let fill = |t: f64, y: &PointOf<P>| {
+        follow();
         let mut numbers = numbers.borrow_mut();
         numbers.clear();
         row_of(t, y, &mut numbers);
@@ -130,18 +141,22 @@ pub(super) fn drive_by<P: Runnable>(
     }
     if let Some(every) = checkpoints {
         solve = solve.checkpoints(every, |bytes| {
+            follow();
             watcher.borrow_mut().state(&branches.borrow().append_to(bytes));
         });
     }
-    let (fill, numbers) = (&fill, &numbers);
-    let follow = &|t: f64, y: &PointOf<P>| {
-        fill(t, y);
-        watcher.borrow_mut().followed(t, schema.row(&numbers.borrow()));
-    };
+    let (fill, follow, followed, numbers) = (&fill, &follow, &followed, &numbers);
     if !branches.borrow().is_empty() {
         let least = gap.map_or(0.0, |gap| 1.0 / gap);
         let rate = move |t: f64, y: &PointOf<P>| turn_rate(t, y).max(least);
-        solve = solve.event(following(follow, rate, [t1 > t0, is_long]));
+        let begin = |at| {
+            follow();
+            followed.borrow_mut().begin(at);
+        };
+        let look = |at: [f64; 2], y: &PointOf<P>| {
+            followed.borrow_mut().add(at, |row| row_of(at[0], y, row));
+        };
+        solve = solve.event(following(begin, look, rate, [t1 > t0, is_long]));
     }
     for (index, event) in events.into_iter().enumerate() {
         let EventPlan { name, value, direction, stop_after, points, change, .. } = event;
@@ -195,6 +210,7 @@ pub(super) fn drive_by<P: Runnable>(
         None => solve.run_with(y, see),
         Some(CurvePlace(place)) => {
             let (done, points) = solve.run_interpolant_with(y, see);
+            follow();
             *place = points.into_shared().map(|points| {
                 let branches = branches.borrow().clone().of_run();
                 Box::new(CurveOf { points, row_of: shared(), branches }) as Box<dyn RowCurve>

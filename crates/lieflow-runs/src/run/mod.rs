@@ -214,8 +214,10 @@ pub trait Watcher {
     fn event(&mut self, _event: usize, _t: f64, _rising: bool, _row: Row<'_>) {}
     /// The end of a step that had rows within it, after these.
     fn end_of_step(&mut self, _t: f64, _row: Row<'_>) {}
-    /// A point at which the choices of values ([`Branch`](crate::schema::Branch)) are followed.
-    fn followed(&mut self, _t: f64, _row: Row<'_>) {}
+    /// A point at which the choices of values ([`Branch`](crate::schema::Branch)) are followed. These points come in the order
+    /// of time, and those of a step before its rows and events. `is_sure` is false where the values may have changed by half a
+    /// turn and more since the point before.
+    fn followed(&mut self, _t: f64, _row: Row<'_>, _is_sure: bool) {}
     /// The time that the run has reached. Called now and then.
     fn progress(&mut self, _t: f64) {}
     /// The state, to go on from.
@@ -349,7 +351,7 @@ pub struct RowsOf<'a, P: Runnable> {
     pub schema: &'a Schema,
     /// What appends the numbers of a row.
     pub row_of: &'a RowOf<'a, P>,
-    /// How fast the state turns at (t, y), in radians per time.
+    /// A bound of how fast the values with choices change at (t, y), in radians per time.
     pub turn_rate: &'a dyn Fn(f64, &PointOf<P>) -> f64,
     /// What makes the values of the rows of a curve.
     pub shared: &'a dyn Fn() -> Box<SharedRowOf<P>>,

@@ -100,7 +100,7 @@ pub struct Observable {
     pub parts: Vec<Component>,
     /// What a run chooses so that the columns are continuous.
     pub branch: Branch,
-    /// Is that choice followed between rows, at points for each radian that the state turns? Else from row to row.
+    /// Is that choice followed between rows, at points for each radian by which the values change? Else from row to row.
     pub is_followed: bool,
     /// The shape of its values as an array, rows first; none of a number.
     pub shape: Vec<usize>,

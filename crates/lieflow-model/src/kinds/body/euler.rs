@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use lieflow_runs::schema::Branch;
-use nalgebra::{Quaternion, UnitQuaternion};
+use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
 use crate::reader::values::Reals;
 use crate::reader::{KeyPath, ReadError, Refusal, help_for};
@@ -112,6 +112,23 @@ impl Sequence {
         let within = |x: f64| x - TAU * (x / TAU).round();
         let [first, last] = [first, last].map(within);
         if self.fixed { [first, second, last] } else { [last, second, first] }
+    }
+
+    /// A bound of the rates of the angles, at the rotation g with this angular velocity in the body.
+    ///
+    /// The first angle is the longitude in space of an axis of the body, the third is that in the body of an axis of space.
+    /// The poles are where the sequence is singular. A longitude turns as fast as its axis moves, divided by the distance from
+    /// the poles.
+    pub(super) fn rate(&self, g: &Matrix3<f64>, omega: &Vector3<f64>) -> f64 {
+        let [first, _, last] = self.axes;
+        let [space, body] = if self.fixed { [last, first] } else { [first, last] };
+        let across = |x: Vector3<f64>, axis: usize| {
+            let (a, b) = (x[(axis + 1) % 3], x[(axis + 2) % 3]);
+            (a * a + b * b).sqrt()
+        };
+        let sine = across(g.row(space).transpose(), body).max(Branch::SINGULAR);
+        let moving = across(*omega, body).max(across(g * omega, space));
+        omega.norm().max(moving / sine)
     }
 
     /// The rotation of three angles.

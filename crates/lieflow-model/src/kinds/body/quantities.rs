@@ -66,8 +66,8 @@ fn nearer(mut g: Matrix3<f64>) -> Matrix3<f64> {
 pub(in crate::kinds) trait Oriented: System {
     /// The rotation to space.
     fn orientation(&self, y: &PointOf<Self>) -> Orientation;
-    /// How fast the orientation turns: the length of the angular velocity.
-    fn turn_rate(&self, t: f64, y: &PointOf<Self>) -> f64;
+    /// The angular velocity in the body, along the axes that the rotation is about.
+    fn turning(&self, t: f64, y: &PointOf<Self>) -> Vector3<f64>;
     /// Why the problem has no orientation, if it has none.
     fn without_orientation(&self) -> Option<&'static str> {
         None
@@ -75,6 +75,16 @@ pub(in crate::kinds) trait Oriented: System {
     /// The axes that the rotation is about, in those of the scene, where they are others.
     fn axes(&self) -> Option<Matrix3<f64>> {
         None
+    }
+
+    /// A vector along the axes of the scene.
+    fn in_scene(&self, x: Vector3<f64>) -> Vector3<f64> {
+        self.axes().map_or(x, |axes| axes * x)
+    }
+    /// The rotation from the axes of the scene to space.
+    fn attitude(&self, y: &PointOf<Self>) -> Matrix3<f64> {
+        let g = self.orientation(y).rotation();
+        self.axes().map_or(g, |axes| g * axes.transpose())
     }
 }
 
@@ -91,16 +101,6 @@ pub(in crate::kinds) trait AsBody: Oriented {
     /// The third direction of space, seen from the body.
     fn vertical(&self, y: &PointOf<Self>) -> Vector3<f64> {
         self.orientation(y).rotation().row(2).transpose()
-    }
-
-    /// A vector along the axes of the scene.
-    fn in_scene(&self, x: Vector3<f64>) -> Vector3<f64> {
-        self.axes().map_or(x, |axes| axes * x)
-    }
-    /// The rotation from the axes of the scene to space.
-    fn attitude(&self, y: &PointOf<Self>) -> Matrix3<f64> {
-        let g = self.orientation(y).rotation();
-        self.axes().map_or(g, |axes| g * axes.transpose())
     }
 }
 
@@ -191,12 +191,9 @@ pub(in crate::kinds) const fn quaternion<S: Oriented>() -> Quantity<S> {
     )
     .of_quaternion()
     .continuous_by(|_| Branch::Sign)
-    .turning_by(S::turn_rate)
+    .turning_by(|body: &S, t, y| body.turning(t, y).norm())
     .missing_where(S::without_orientation)
 }
-
-/// Euler angles are looked at as if the body turned so much faster: near their singular angle they do.
-const FASTER: f64 = 4.0;
 
 /// The attitude as the Euler angles of a sequence.
 pub(in crate::kinds) const fn angles<S: Oriented, const SEQUENCE: usize>() -> Quantity<S> {
@@ -206,7 +203,9 @@ pub(in crate::kinds) const fn angles<S: Oriented, const SEQUENCE: usize>() -> Qu
     })
     .in_radians()
     .continuous_by(|_| SEQUENCES[SEQUENCE].branch())
-    .turning_by(|body: &S, t, y| FASTER * body.turn_rate(t, y))
+    .turning_by(|body: &S, t, y| {
+        SEQUENCES[SEQUENCE].rate(&body.attitude(y), &body.in_scene(body.turning(t, y)))
+    })
     .missing_where(S::without_orientation)
 }
 

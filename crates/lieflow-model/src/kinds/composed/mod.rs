@@ -318,7 +318,7 @@ impl Oriented for Composed {
     fn orientation(&self, (_, (rotations, _)): &Point) -> Orientation {
         rotations.first().map_or(Orientation::NotModelled, |g| Orientation::Matrix(*g))
     }
-    fn turn_rate(&self, t: f64, y: &Point) -> f64 {
+    fn turning(&self, t: f64, y: &Point) -> Vector3<f64> {
         thread_local! {
             // It is asked after each step, which allocates nothing.
             static VALUES: RefCell<Vec<f64>> = const { RefCell::new(Vec::new()) };
@@ -328,7 +328,8 @@ impl Oriented for Composed {
             values.clear();
             values.push(t);
             self.parts.iter().for_each(|part| part.space.show(y, values));
-            field.iter().fold(0.0, |length: f64, formula| length.hypot(formula.value(values)))
+            let value = |i: usize| field.get(i).map_or(0.0, |formula| formula.value(values));
+            self.orientation(y).rotation().tr_mul(&Vector3::from_fn(|i, _| value(i)))
         })
     }
     fn without_orientation(&self) -> Option<&'static str> {

@@ -258,8 +258,8 @@ impl<R: BodyCoordinates> Oriented for Body<R> {
     fn orientation(&self, y: &PointOf<Self>) -> Orientation {
         R::pose(&self.problem, y).orientation
     }
-    fn turn_rate(&self, _: f64, y: &PointOf<Self>) -> f64 {
-        self.omega(y).norm()
+    fn turning(&self, _: f64, y: &PointOf<Self>) -> Vector3<f64> {
+        self.omega(y)
     }
     fn without_orientation(&self) -> Option<&'static str> {
         (!R::TURNS).then_some("the momentum alone is integrated")
