@@ -139,7 +139,7 @@ fn run_one(
         most: if args.yes { u64::MAX } else { MOST },
         any_length: args.yes,
     };
-    let how = |yes: bool| {
+    let typed = |yes: bool| {
         let again = RunArgs { yes, ..args.clone() };
         let folder = match &args.out {
             Some(out) if left.len() > 1 => out,
@@ -147,8 +147,9 @@ fn run_one(
         };
         let paths: Vec<_> = left.iter().map(|path| quoted(&path.display().to_string())).collect();
         let (paths, options) = (paths.join(" "), again.options_typed(folder));
-        format!("`lieflow run {paths}{options} --resume` goes on from there")
+        format!("`lieflow run {paths}{options} --resume`")
     };
+    let how = |yes: bool| format!("{} goes on from there", typed(yes));
     let summary = match run_scene(scene, &folder, options, stop) {
         Err(
             error @ (CliError::Io { .. }
@@ -164,7 +165,18 @@ fn run_one(
     };
     let Some(failure) = &summary.failure else {
         let page = (!args.no_page).then_some(PAGE);
-        return output::print(&in_words(&summary, &folder, page));
+        output::print(&in_words(&summary, &folder, page))?;
+        return match summary.interrupted {
+            true => {
+                let how = typed(args.yes);
+                let message = format!(
+                    "interrupted in the second run, by which the error is estimated\nAll rows are there; {how} makes the \
+                     second run"
+                );
+                Err(CliError::Stopped { message, code: INTERRUPTED })
+            }
+            false => Ok(()),
+        };
     };
     let place = folder.join(summary.trajectory);
     let mut kept = format!("The rows up to there ({}) are in {}", summary.rows, place.display());
@@ -290,6 +302,7 @@ pub fn run_scene(
         let check = Check::new(&watch, rows, shown, (t, done.taken, done.ended_by.is_some()), stop);
         kept.bar.now(1.0, "a second run, to estimate the error");
         checked = check_errors(&check, scene, error_check, cpu_time / share);
+        done.interrupted = !matches!(checked, Ok(None)) && stop.load(Ordering::Relaxed);
     }
     let with_time = |(t, row)| {
         let mut line = vec![t];

@@ -241,7 +241,7 @@ fn several_scenes_go_on_and_fail_as_one_does() {
     assert_eq!(folder.names("both/b"), ["events.csv", "summary.json", "trajectory.csv"]);
 }
 
-/// The run is complete when the second one begins: what is lost is the estimate of its error.
+/// The run is complete when the second one begins: what is lost is the estimate of its error, and `--resume` makes it.
 #[test]
 fn a_second_run_is_interrupted() {
     let folder = Folder::new();
@@ -258,10 +258,29 @@ fn a_second_run_is_interrupted() {
     let run = interrupt(run);
     assert_eq!(run.code, Some(130), "{run:?}");
     assert!(run.out.contains("did not end: it was stopped"), "{run:?}");
-    assert!(run.err.contains("interrupted before next.toml"), "{run:?}");
+    assert!(run.err.contains("interrupted in the second run"), "{run:?}");
+    let again = "`lieflow run scene.toml next.toml --out out --error-check always --resume` makes the second run";
+    assert!(run.err.contains(again), "{run:?}");
     let summary = folder.json("out/scene/summary.json");
     assert_eq!((&summary["completed"], &summary["accuracy"]), (&true.into(), &Value::Null));
-    assert_eq!(folder.data("out/scene"), ["events.csv", "summary.json", "trajectory.csv"]);
+    let rows = folder.read("out/scene/trajectory.csv");
+    let names = ["events.csv", "run.rows", "run.state", "summary.json", "trajectory.csv"];
+    assert_eq!(folder.data("out/scene"), names);
+    folder
+        .lieflow(&[
+            "run",
+            "scene.toml",
+            "--out",
+            "out/scene",
+            "--error-check",
+            "always",
+            "--resume",
+        ])
+        .ok();
+    let summary = folder.json("out/scene/summary.json");
+    assert!(summary["accuracy"]["digits"].is_number(), "{summary}");
+    assert_eq!(folder.read("out/scene/trajectory.csv"), rows);
+    assert!(!folder.names("out/scene").iter().any(|name| name.starts_with("run.")));
 }
 
 /// Work that takes long in one piece, with the file that is there when it has begun: a step of a fluid, a step with ten
