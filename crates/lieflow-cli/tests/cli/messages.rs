@@ -412,3 +412,24 @@ fn the_last_row_is_there_by_name() {
         }
     }
 }
+
+/// Where the span is wrong, no value is named that the scene does not have.
+#[test]
+fn a_span_that_is_too_far_from_zero_is_refused_at_its_place() {
+    let folder = Folder::new();
+    let text = SCENE.replace("dt = 0.05\n", "");
+    for (span, t, gap) in [
+        ("[1e16, 10000000000000002]", "1.0000000000000002e16", "2"),
+        ("[1e308, inf]", "1e308", "2e292"),
+    ] {
+        let end = "[[events]]\nname = \"e\"\nwhen = \"m1\"\nstop_after = 1\n[output]";
+        let text = text.replace("[0, 2.0]", span).replace("[output]", end);
+        folder.write("scene.toml", &text.replace("every = 10\n", ""));
+        let message = folder.lieflow(&["run", "scene.toml"]).refused();
+        let told = format!(
+            "scene.toml:11:10: t_span is too far from t = 0 for its length: near t = {t} the nearest numbers are {gap} apart"
+        );
+        assert!(message.contains(&told), "{message}");
+        assert!(!message.contains("steps") && !message.contains("dt"), "{message}");
+    }
+}

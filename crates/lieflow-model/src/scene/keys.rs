@@ -4,6 +4,7 @@ use core::fmt::Display;
 
 use lieflow::StepControl;
 use lieflow::catalog::{MAPS, MethodSpec, TABLEAUS};
+use lieflow::error::Plain;
 use lieflow::names::{find, same};
 use lieflow::tolerance::Rule;
 use lieflow::{Error, SaveAt, TimeGrid};
@@ -211,6 +212,29 @@ fn not_empty(Span([t0, t1]): Span) -> Result<[f64; 2], ReadError> {
     }
 }
 
+/// The steps of one size over a span. Where the scene states none, what is wrong is the span.
+fn grid_of([t0, t1]: [f64; 2], fixed: Option<&Fixed>) -> Result<TimeGrid, ReadError> {
+    let grid = match fixed {
+        Some(Either::First(dt)) => TimeGrid::new([t0, t1], *dt),
+        Some(Either::Second(steps)) => TimeGrid::with_steps([t0, t1], *steps),
+        None if t1.is_finite() => TimeGrid::with_steps([t0, t1], STEPS),
+        None => TimeGrid::new([t0, t1], 1.0),
+    };
+    grid.map_err(|error| match error {
+        Error::OutOfRange { arg, .. } if fixed.is_none() && !arg.starts_with("t_span") => {
+            let t = t0.abs().max(if t1.is_finite() { t1.abs() } else { 0.0 });
+            let gap: f64 = format!("{:.0e}", t.next_up() - t).parse().unwrap_or(f64::NAN);
+            let message = format!(
+                "t_span is too far from t = 0 for its length: near t = {} the nearest numbers are {} apart",
+                Plain(&t),
+                Plain(&gap)
+            );
+            Refusal::at("t_span", message).into()
+        }
+        error => error.into(),
+    })
+}
+
 /// The times of `stops`, which lie in the span.
 fn within(stops: &[Real], [t0, t1]: [f64; 2]) -> Result<Vec<f64>, Refusal> {
     let [low, high] = [t0.min(t1), t0.max(t1)];
@@ -247,14 +271,12 @@ impl TimeKeys {
             (Ok(fixed), Ok(limits)) => limits.chosen_by_error(fixed.as_ref()),
             _ => Err(ReadError::known()),
         };
-        let ([t0, t1], fixed, limits, control, at_knots, stops) =
-            all!(t_span, fixed, limits, control, at_knots, stops)?;
-        let grid = match fixed {
-            Some(Either::First(dt)) => TimeGrid::new([t0, t1], dt)?,
-            Some(Either::Second(steps)) => TimeGrid::with_steps([t0, t1], steps)?,
-            None if t1.is_finite() => TimeGrid::with_steps([t0, t1], STEPS)?,
-            None => TimeGrid::new([t0, t1], 1.0)?,
+        let grid = match (&t_span, seen(&fixed)) {
+            (Ok(t_span), Ok(fixed)) => grid_of(*t_span, fixed.as_ref()),
+            _ => Err(ReadError::known()),
         };
+        let (_, _, grid, limits, control, at_knots, stops) =
+            all!(t_span, fixed, grid, limits, control, at_knots, stops)?;
         Ok(Times { grid, control, limits, at_knots, stops })
     }
 
