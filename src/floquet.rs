@@ -126,8 +126,8 @@ impl Stability {
     }
 }
 
-/// ln|λ| of the fastest multiplier λ that is farther from the circle than a change of M by `error` moves it; 0 if there
-/// is none.
+/// ln|λ| of the fastest multiplier λ that is farther from the circle than a change of M by `error` moves it, or 0 if all are
+/// nearer.
 ///
 /// To first order a change E of M moves the mean of a group of multipliers by ‖P‖‖E‖ at most, where P is the projector on
 /// their space: P = X(YᵀX)⁻¹Yᵀ with the eigenvectors X of M and Y of Mᵀ. A group is λ with those that are nearest to it. So

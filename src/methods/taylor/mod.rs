@@ -110,6 +110,12 @@ impl<const N: usize> Taylor<N> {
     }
 }
 
+/// The facts of a Taylor series of order n.
+fn facts_of(n: usize) -> Facts {
+    let facts = Facts::of_order(n).cost(Some(n as u64), MapCounts::default());
+    facts.estimate("", Some(n - 1)).dense(n, 0)
+}
+
 /// The terms of a step, for the points within it.
 #[derive(Clone, Debug)]
 pub struct TaylorWork<S, const N: usize>(Terms<S, Quaternion, N>);
@@ -121,10 +127,7 @@ where
     type Work = TaylorWork<ScalarOf<P>, N>;
 
     fn facts(&self, _: &P) -> Facts {
-        Facts::of_order(N)
-            .cost(Some(N as u64), MapCounts::default())
-            .estimate("", Some(N - 1))
-            .dense(N, 0)
+        facts_of(N)
     }
     fn work(&self, _: &P, _: &PointOf<P>) -> Result<Self::Work, Error> {
         Ok(TaylorWork(Terms::new(Quaternion)))

@@ -7,9 +7,9 @@
 //! Cost: about 3N²/2 multiplications, four at once on some machines, one division and one root.
 //!
 //! [`Taylor`](super::Taylor) takes five times as many multiplications for the rotation of the body, so it serves bodies
-//! with an attitude, too. Near the saddle, where small numbers of m decide, errors by this method are a tenth to a hundredth
-//! of those by `Taylor` at the same steps: here each number of m has its own series, there small ones are differences of
-//! large ones.
+//! with an attitude, too. Near the saddle small numbers of m decide. There errors of this method are a tenth to a hundredth of
+//! those of `Taylor` at the same steps: each number of m has its own series, while `Taylor` takes small numbers as
+//! differences of large ones.
 //!
 //! The last two coefficients give the error of a step. The series at θh, brought to the length of m, is the dense output,
 //! of order N at all θ. Source: À. Jorba & M. Zou, Experiment. Math. 14 (2005), for the series and the step; Hairer, Lubich,
@@ -19,7 +19,7 @@ use nalgebra::Vector3;
 
 use super::lanes::Wide;
 use super::series::{Momentum, Terms, Unknown, error, square_of};
-use super::{Embedded, Facts, MapCounts, Method, Step, Within};
+use super::{Embedded, Facts, Method, Step, Within, facts_of};
 use crate::error::{Error, StepError};
 use crate::methods::embedded::ratio_of_relative_step;
 use crate::problems::{FreeBody, PointOf, ScalarOf};
@@ -114,10 +114,7 @@ where
     type Work = MomentumWork<ScalarOf<P>, N>;
 
     fn facts(&self, _: &P) -> Facts {
-        Facts::of_order(N)
-            .cost(Some(N as u64), MapCounts::default())
-            .estimate("", Some(N - 1))
-            .dense(N, 0)
+        facts_of(N)
     }
     fn work(&self, _: &P, _: &PointOf<P>) -> Result<Self::Work, Error> {
         let start = Vector3::from_element(Real::lit(0.0));

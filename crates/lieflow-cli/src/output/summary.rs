@@ -549,7 +549,7 @@ impl Watched {
         self.drift.see_end_of_step(value);
     }
 
-    /// Calls `each` with the largest drift at the ends of steps so far; −1 if there is none.
+    /// Calls `each` with the largest drift at the ends of steps so far, or with −1 before the first step has ended.
     pub fn each_unshown(&mut self, each: &mut dyn FnMut(&mut f64)) {
         let mut largest = self.drift.largest_at_ends_of_steps.unwrap_or(-1.0);
         each(&mut largest);
